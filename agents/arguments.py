@@ -1,19 +1,25 @@
 """Checks of arguments, which refuse a bad value in one line that names the argument, the value and what is allowed."""
 
+import re
 import reprlib
 import sys
 from numbers import Integral, Real
-from typing import Any
+from typing import Any, TypeAlias
 
 import numpy as np
 from gymnasium import spaces
 from stable_baselines3.common.type_aliases import Schedule
-from stable_baselines3.common.utils import FloatSchedule
+from stable_baselines3.common.utils import ConstantSchedule, FloatSchedule, LinearSchedule
+
+Deviations: TypeAlias = float | str | list[float] | np.ndarray | Schedule
+"""Number, linear schedule by its text, array or schedule."""
+LINEAR = re.compile(r"lin_(\d*\.?\d+(e[+-]?\d+)?)")
+"""Text of RL Zoo for a linear schedule."""
 
 
 def checked_number(
     name: str,
-    value: float,
+    value: Any,
     lowest: float,
     highest: float = sys.float_info.max,
     above: bool = False,
@@ -59,17 +65,31 @@ def checked_disturbances(values: Any, number: int | None) -> np.ndarray:
 
 
 def checked_schedule(
-    name: str, value: float | Schedule, lowest: float, highest: float = sys.float_info.max
-) -> FloatSchedule:
+    name: str,
+    value: Deviations,
+    lowest: float,
+    highest: float = sys.float_info.max,
+    shape: tuple[int, ...] = (),
+) -> Schedule:
     """
     Make a schedule, and refuse a number out of its range, or a schedule that begins or ends out of it.
 
     :param name: Name of the argument
-    :param value: A number, or a function of the current progress remaining (from 1 to 0)
+    :param value: A number, a function of the current progress remaining (from 1 to 0), or text such as ``"lin_0.3"``,
+        which goes down to 0 as in RL Zoo
     :param lowest: Lowest value
     :param highest: Highest value; by default any finite one
+    :param shape: Shape of the array that may stand in place of a number; by default none may
     :return: The schedule
     """
+    if isinstance(value, str) and (linear := LINEAR.fullmatch(value)):
+        value = LinearSchedule(float(linear[1]), 0.0, 1.0)
+    if shape and isinstance(value, list | tuple | np.ndarray):
+        if np.shape(value) != shape:
+            raise ValueError(f"{name} must be one number, or as many as an action has: {shape}, not {np.shape(value)}")
+        for one in np.ravel(value):
+            checked_number(f"each of {name}", one, lowest, highest)
+        return ConstantSchedule(np.array(value, dtype=float))  # type: ignore[arg-type]  # as many numbers
     if not callable(value):
         return FloatSchedule(float(checked_number(name, value, lowest, highest)))
     for progress_remaining in (1, 0):

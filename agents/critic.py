@@ -17,6 +17,21 @@ LOG_DIAGONAL_MIN = -5.0
 LOG_DIAGONAL_MAX = 5.0
 
 
+class _InwardClamp(th.autograd.Function):
+    """Logarithm of the diagonal of ``L``, clamped; beyond a bound it gets the gradients that lead back."""
+
+    @staticmethod
+    def forward(ctx: Any, outputs: th.Tensor) -> th.Tensor:
+        ctx.save_for_backward(outputs)
+        return outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX)
+
+    @staticmethod
+    def backward(ctx: Any, gradient: th.Tensor) -> th.Tensor:
+        (outputs,) = ctx.saved_tensors
+        leads_out = ((outputs > LOG_DIAGONAL_MAX) & (gradient < 0)) | ((outputs < LOG_DIAGONAL_MIN) & (gradient > 0))
+        return gradient.masked_fill(leads_out, 0.0)
+
+
 class Values(NamedTuple):
     """
     What a critic says of some states and actions, of shape (batch, 1) but for ``mu``.
@@ -197,4 +212,4 @@ class QuadraticCritic(BaseModel):
 
     def _entries(self, shared: th.Tensor) -> th.Tensor:
         outputs = self.lower_net(shared)
-        return th.where(self.on_diagonal, outputs.clamp(LOG_DIAGONAL_MIN, LOG_DIAGONAL_MAX).exp(), outputs)
+        return th.where(self.on_diagonal, _InwardClamp.apply(outputs).exp(), outputs)

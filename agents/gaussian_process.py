@@ -4,7 +4,6 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
-from scipy.linalg import cho_solve, solve_triangular
 
 from sarah.agents.corrections import bounded
 
@@ -43,6 +42,8 @@ class GaussianProcess:
     """
 
     def __init__(self, actions: np.ndarray, rewards: np.ndarray, kernel: tuple[float, float] | None = None) -> None:
+        from scipy.linalg import cho_solve  # Here, because plain NAF needs no scipy
+
         self._known = np.asarray(actions[-MOST_EPISODES:], dtype=float)
         known = bounded(np.asarray(rewards[-MOST_EPISODES:], dtype=float))
         self._doubt = float(np.quantile(known, PRIOR_QUANTILE)) if len(known) else 0.0
@@ -76,6 +77,8 @@ class GaussianProcess:
         :param deviations: Number of standard deviations
         :return: Bounds of shape (m,)
         """
+        from scipy.linalg import solve_triangular
+
         covariances = _covariances(_squared_distances(actions, self._known), self._length)
         explained = solve_triangular(self._factor, covariances.T, lower=True) ** 2
         unknown = self._variance * np.maximum(1 - explained.sum(axis=0), 0)

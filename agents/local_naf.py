@@ -3,13 +3,15 @@
 from typing import Any
 
 import numpy as np
+import torch as th
 from stable_baselines3.common.noise import ActionNoise
 from stable_baselines3.common.type_aliases import GymEnv, Schedule
 
-from sarah.agents.arguments import checked_number, checked_schedule
+from sarah.agents.arguments import Deviations, checked_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.naf import NAF
 from sarah.agents.policies import NAFPolicy
+from sarah.agents.unknown_arguments import explains_unknown
 
 
 class LocalNAF(NAF):
@@ -24,6 +26,7 @@ class LocalNAF(NAF):
     :param env: The environment to learn from (if registered in Gym, can be str)
     :param gamma: the discount factor; above 0 only for a replay without ranks, that is with ``temperature=0`` and
         ``elite_share=0``
+    :param replay_buffer_class: Replay buffer class to use, which must know the best action
     :param elite_share: Share of the exploring actions that are drawn around the best action of the replay buffer;
         it can be a function of the current progress remaining (from 1 to 0)
     :param elite_std: Standard deviation of these draws, in actions scaled to [-1, 1]; it can be a function of the
@@ -33,29 +36,71 @@ class LocalNAF(NAF):
     :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
         a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and not only after
         ``learning_starts`` uniform ones
-    :param replay_buffer_class: Replay buffer class to use, which must know the best action
     :param _init_setup_model: Whether or not to build the network at the creation of the instance
-    :param kwargs: Other arguments of :class:`~sarah.agents.naf.NAF`
+
+    The other arguments are those of :class:`~sarah.agents.naf.NAF`.
     """
 
     replay_buffer: RankReplayBuffer
 
+    @explains_unknown
     def __init__(
         self,
         policy: str | type[NAFPolicy],
         env: GymEnv | str,
-        *,
+        learning_rate: float | Schedule = 1e-3,
+        buffer_size: int = 1_000_000,  # 1e6
+        learning_starts: int = 100,
+        batch_size: int = 256,
+        tau: float = 0.02,
         gamma: float = 0.0,
-        elite_share: float | Schedule = 0.5,
-        elite_std: float | Schedule = 0.2,
+        train_freq: int | tuple[int, str] = 1,
+        gradient_steps: int = 1,
+        action_noise: ActionNoise | None = None,
+        replay_buffer_class: type[RankReplayBuffer] = RankReplayBuffer,
+        replay_buffer_kwargs: dict[str, Any] | None = None,
+        optimize_memory_usage: bool = False,
+        n_steps: int = 1,
+        max_grad_norm: float | None = 1.0,
+        exploration_std: Deviations = 0.3,
+        stats_window_size: int = 100,
+        tensorboard_log: str | None = None,
+        policy_kwargs: dict[str, Any] | None = None,
+        verbose: int = 0,
+        seed: int | None = None,
+        device: th.device | str = "auto",
+        _init_setup_model: bool = True,
+        *,
+        elite_share: float | str | Schedule = 0.5,
+        elite_std: float | str | Schedule = 0.2,
         elite_draws: int = 16,
         first_action_centre: bool = False,
-        replay_buffer_class: type[RankReplayBuffer] = RankReplayBuffer,
-        _init_setup_model: bool = True,
-        **kwargs: Any,
     ) -> None:
         super().__init__(
-            policy, env, gamma=gamma, replay_buffer_class=replay_buffer_class, _init_setup_model=False, **kwargs
+            policy,
+            env,
+            learning_rate,
+            buffer_size,
+            learning_starts,
+            batch_size,
+            tau,
+            gamma,
+            train_freq,
+            gradient_steps,
+            action_noise,
+            replay_buffer_class,
+            replay_buffer_kwargs,
+            optimize_memory_usage,
+            n_steps,
+            max_grad_norm,
+            exploration_std,
+            stats_window_size,
+            tensorboard_log,
+            policy_kwargs,
+            verbose,
+            seed,
+            device,
+            _init_setup_model=False,
         )
 
         self.elite_share = elite_share
@@ -74,7 +119,10 @@ class LocalNAF(NAF):
         self.elite_share_schedule = checked_schedule("elite_share", self.elite_share, 0.0, 1.0)
         self.elite_std_schedule = checked_schedule("elite_std", self.elite_std, 0.0)
         if not isinstance(self.replay_buffer, RankReplayBuffer):
-            raise ValueError(f"LocalNAF needs a RankReplayBuffer, not a {type(self.replay_buffer).__name__}")
+            raise ValueError(
+                f"LocalNAF needs a RankReplayBuffer, not a {type(self.replay_buffer).__name__}, "
+                "which an agent of NAF has: NAF.load loads that"
+            )
         if self.gamma != 0 and self.elite_share != 0:
             raise ValueError(
                 f"gamma must be 0 with elite_share above 0, not {self.gamma!r}: "

@@ -17,11 +17,11 @@ from stable_baselines3.common.utils import get_parameters_by_name, polyak_update
 from torch import nn
 from torch.optim.swa_utils import get_ema_multi_avg_fn
 
-from sarah.agents.arguments import check_actions, checked_number, checked_schedule
+from sarah.agents.arguments import Deviations, check_actions, checked_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.critic import QuadraticCritic
 from sarah.agents.losses import centre_loss, nearby_loss
-from sarah.agents.naf_warnings import FRESH_UPDATES, RUNAWAY_RATIO, FirstUpdates, reward_warning, value_warning
+from sarah.agents.naf_warnings import Watch
 from sarah.agents.policies import CnnPolicy, MlpPolicy, MultiInputPolicy, NAFPolicy
 from sarah.agents.unknown_arguments import explains_unknown
 
@@ -46,8 +46,7 @@ class NAF(OffPolicyAlgorithm):
     :param buffer_size: size of the replay buffer
     :param learning_starts: number of steps to collect transitions for before learning starts
     :param batch_size: Minibatch size for each gradient update
-    :param tau: the soft update coefficient ("Polyak update", between 0 and 1). TD3's 0.005 is
-        slower to learn with
+    :param tau: the soft update coefficient ("Polyak update", between 0 and 1)
     :param gamma: the discount factor
     :param train_freq: Update the model every ``train_freq`` steps. Alternatively pass a tuple of frequency
         and unit like ``(5, "step")`` or ``(2, "episode")``.
@@ -55,7 +54,7 @@ class NAF(OffPolicyAlgorithm):
         Set to ``-1`` means to do as many gradient steps as steps done in the environment
         during the rollout.
     :param action_noise: the action noise type. If ``None`` (default), Gaussian noise
-        of ``exploration_std`` is used. Before ``learning_starts`` actions are uniform, without noise.
+        of ``exploration_std`` is used, but not before ``learning_starts``, where actions are uniform.
     :param replay_buffer_class: Replay buffer class to use (for instance ``HerReplayBuffer``).
         If ``None``, it will be automatically selected.
     :param replay_buffer_kwargs: Keyword arguments to pass to the replay buffer on creation.
@@ -63,11 +62,13 @@ class NAF(OffPolicyAlgorithm):
         at a cost of more complexity.
     :param n_steps: When n_step > 1, uses n-step return (with the NStepReplayBuffer) when updating
         the Q-value network. Note: it is only used when ``replay_buffer_class`` is ``None``,
-        and is not supported for Dict observation spaces yet.
-    :param max_grad_norm: The maximum value for the gradient clipping
+        and is not supported for Dict observation spaces yet. When passing a custom ``replay_buffer_class``,
+        configure it directly with ``replay_buffer_kwargs={"n_steps": ..., "gamma": ...}`` instead.
+    :param max_grad_norm: The maximum value for the gradient clipping; ``None`` for no clipping
     :param exploration_std: Standard deviation of the Gaussian exploration noise, in actions scaled
-        to [-1, 1]. It can be a function of the current progress remaining (from 1 to 0),
-        such as ``LinearSchedule``; 0 switches the noise off. Without effect if ``action_noise`` is given.
+        to [-1, 1]; an array has one for each dimension of the action. It can be a function of the current progress
+        remaining (from 1 to 0), such as ``LinearSchedule``, or ``"lin_0.3"`` as in RL Zoo, which ends at 0; 0 switches
+        the noise off. Without effect if ``action_noise`` is given.
     :param stats_window_size: Window size for the rollout logging, specifying the number of episodes
         to average the reported success rate, mean episode length, and mean reward over
     :param tensorboard_log: the log location for tensorboard (if None, no logging)
@@ -111,8 +112,8 @@ class NAF(OffPolicyAlgorithm):
         replay_buffer_kwargs: dict[str, Any] | None = None,
         optimize_memory_usage: bool = False,
         n_steps: int = 1,
-        max_grad_norm: float = 1.0,
-        exploration_std: float | Schedule = 0.3,
+        max_grad_norm: float | None = 1.0,
+        exploration_std: Deviations = 0.3,
         stats_window_size: int = 100,
         tensorboard_log: str | None = None,
         policy_kwargs: dict[str, Any] | None = None,
@@ -150,9 +151,7 @@ class NAF(OffPolicyAlgorithm):
 
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
-        self.value_bound = self.value_ceiling = 0.0
-        self.warned_of_values = False
-        self.first_updates = FirstUpdates()
+        self.watch = Watch()
 
         if _init_setup_model:
             self._setup_model()
@@ -173,10 +172,12 @@ class NAF(OffPolicyAlgorithm):
         self.batch_norm_stats_target = get_parameters_by_name(self.q_net_target, ["running_"])
         self.batch_size = checked_number("batch_size", self.batch_size, 1, whole=True)
         self.gamma = checked_number("gamma", self.gamma, 0.0, 1.0)
-        self.tau = checked_number("tau", self.tau, 0.0, 1.0, above=True)
+        self.tau = checked_number("tau", self.tau, 0.0, 1.0)
         self.n_steps = checked_number("n_steps", self.n_steps, 1, whole=True)
-        self.max_grad_norm = checked_number("max_grad_norm", self.max_grad_norm, 0.0, highest=math.inf, above=True)
-        self.exploration_schedule = checked_schedule("exploration_std", self.exploration_std, 0.0)
+        if self.max_grad_norm is not None:
+            self.max_grad_norm = checked_number("max_grad_norm", self.max_grad_norm, 0.0, math.inf, above=True)
+        shape = self.action_space.shape
+        self.exploration_schedule = checked_schedule("exploration_std", self.exploration_std, 0.0, shape=shape)
         if isinstance(self.replay_buffer, RankReplayBuffer) and self.replay_buffer.temperature > 0 and self.gamma != 0:
             raise ValueError(
                 f"gamma must be 0 with a RankReplayBuffer of temperature {self.replay_buffer.temperature:g}, "
@@ -193,13 +194,12 @@ class NAF(OffPolicyAlgorithm):
         action_noise: ActionNoise | None = None,
         n_envs: int = 1,
     ) -> tuple[np.ndarray, np.ndarray]:
-        if self.num_timesteps < learning_starts:
-            action_noise = None  # Clipped noise would move part of the uniform warm-up actions to the bounds
-        elif action_noise is None:
+        # Not in the warm-up: clipped noise would move part of its uniform actions to the bounds
+        if action_noise is None and self.num_timesteps >= learning_starts:
             shape = (n_envs, *self.action_space.shape)
             std = self.exploration_schedule(self._current_progress_remaining)
             action_noise = NormalActionNoise(np.zeros(shape), np.full(shape, std))
-            self.logger.record("train/exploration_std", std)
+            self.logger.record("train/exploration_std", float(np.mean(std)))
         return super()._sample_action(learning_starts, action_noise, n_envs)
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
@@ -210,8 +210,10 @@ class NAF(OffPolicyAlgorithm):
         :param batch_size: Minibatch size for each update
         :raises ValueError: if the loss is not finite, as no later update would mend the networks
         """
-        if self._n_updates == 0:
-            self._check_rewards()
+        if gradient_steps < 1:
+            return
+        if not self.watch.judged_rewards:
+            self._judge_rewards()
         # Switch to train mode (this affects batch norm / dropout)
         self.policy.set_training_mode(True)
         # Update learning rate according to schedule
@@ -253,8 +255,8 @@ class NAF(OffPolicyAlgorithm):
             # Optimize the policy
             self.policy.optimizer.zero_grad()
             loss.backward()
-            # Clip gradient norm, of all parameters in one call
-            nn.utils.clip_grad_norm_(parameters, self.max_grad_norm, foreach=True)
+            if self.max_grad_norm is not None:
+                nn.utils.clip_grad_norm_(parameters, self.max_grad_norm)
             self.policy.optimizer.step()
 
             average_parameters(target_parameters, parameters, 1)
@@ -264,8 +266,7 @@ class NAF(OffPolicyAlgorithm):
 
         # Increase update counter
         self._n_updates += gradient_steps
-        if (text := self.first_updates.thread_warning(seconds, gradient_steps, parameters, batch_size)) is not None:
-            warnings.warn(text, stacklevel=2)
+        _warn(self.watch.judge_time(seconds, gradient_steps, parameters, batch_size))
 
         mean_loss = th.stack(losses).mean().item()
         if not math.isfinite(mean_loss):
@@ -280,37 +281,31 @@ class NAF(OffPolicyAlgorithm):
         self.logger.record("train/q", th.stack(mean_q_values).mean().item())
         if 0 < self.gamma < 1:  # The last batch is a sample as good as all of them
             forever = replay_data.rewards / (1 - discounts)
-            self._check_values(current_values.best.max().item(), forever.min().item(), forever.max().item())
+            ends = forever.min().item(), forever.max().item()
+            ratio, text = self.watch.judge_value(current_values.best.max().item(), ends, self.gamma, self.q_net.has_w)
+            if ratio is not None:
+                self.logger.record("train/value_over_bound", ratio)
+            _warn(text)
 
-    def _check_rewards(self) -> None:
+    def _judge_rewards(self) -> None:
         """Warn if the rewards of the warm-up are such that ``mu`` learns badly from them."""
-        rewards = getattr(self.replay_buffer, "rewards", np.empty(0))[: self.replay_buffer.size()]
+        buffer = self.replay_buffer
+        rewards = getattr(buffer, "rewards", np.empty(0))[: buffer.size()]
         if self._vec_normalize_env is not None:
             rewards = self._vec_normalize_env.normalize_reward(rewards)
-        if (text := reward_warning(rewards)) is not None:
-            warnings.warn(text, stacklevel=2)
+        _warn(self.watch.judge_rewards(rewards, self.learning_starts, buffer.full))
 
-    def _check_values(self, largest: float, lowest_forever: float, highest_forever: float) -> None:
+    def set_env(self, env: GymEnv, force_reset: bool = True) -> None:
         """
-        Log how near ``V`` comes to the largest value that rewards allow, and warn once if it is far beyond.
+        Set the environment to learn from; what was seen of the rewards of another one is forgotten.
 
-        That value is the ceiling: of the highest reward at every step, or 0 where all are negative, as an episode may
-        end. Where ``V`` exceeds it, the excess counts in units of the bound, of the largest reward whatever its sign.
-
-        :param largest: Largest ``V`` of a batch
-        :param lowest_forever: Value of the lowest reward of this batch if it came at every step
-        :param highest_forever: The same of the highest
+        :param env: The environment for learning a policy
+        :param force_reset: Force call to ``reset()`` before training
         """
-        self.value_bound = max(self.value_bound, highest_forever, -lowest_forever)
-        self.value_ceiling = max(self.value_ceiling, highest_forever)
-        if self.value_bound == 0:
-            return
-        ratio = 1 + (largest - self.value_ceiling) / self.value_bound
-        self.logger.record("train/value_over_bound", ratio)
-        if ratio > RUNAWAY_RATIO and self._n_updates > FRESH_UPDATES and not self.warned_of_values:
-            self.warned_of_values = True
-            text = value_warning(largest, self.value_ceiling, self.value_bound, self.gamma, self.q_net.has_w)
-            warnings.warn(text, stacklevel=2)
+        before = self.env
+        super().set_env(env, force_reset)
+        if self.env is not before:
+            self.watch = Watch()
 
     def learn(
         self: SelfNAF,
@@ -332,9 +327,15 @@ class NAF(OffPolicyAlgorithm):
         )
 
     def _excluded_save_params(self) -> list[str]:
-        return [*super()._excluded_save_params(), "q_net", "q_net_target", "first_updates"]
+        return [*super()._excluded_save_params(), "q_net", "q_net_target", "watch"]
 
     def _get_torch_save_params(self) -> tuple[list[str], list[str]]:
         state_dicts = ["policy", "policy.optimizer"]
 
         return state_dicts, []
+
+
+def _warn(text: str | None) -> None:
+    """Warn of what is to be said, if anything."""
+    if text is not None:
+        warnings.warn(text, stacklevel=3)

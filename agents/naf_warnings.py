@@ -1,6 +1,7 @@
 """Warnings of NAF: of rewards that mu learns badly from, of values that run away, and of threads that wait."""
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import torch as th
@@ -17,6 +18,8 @@ LARGE_DEVIATION = 30.0
 """Deviation of the rewards that is large: somewhat above it first seeds of a small task fail."""
 FEWEST_REWARDS = 5
 """Number of rewards below which their mean and deviation say nothing."""
+REWARDS_WITHOUT_WARM_UP = 100
+"""Number of rewards that are judged where there is no warm-up: those of a few successive steps are alike."""
 FIRST_UPDATES = 10
 """Number of updates that are timed, or fewer if they have taken too long by then."""
 SLOW_UPDATE = 0.05
@@ -78,18 +81,70 @@ def value_warning(largest: float, ceiling: float, bound: float, gamma: float, ha
     )
 
 
-class FirstUpdates:
-    """Time that the first updates of an agent take, and the warning if threads make them slow."""
+@dataclass
+class Watch:
+    """
+    What an agent has seen of an environment since it was made or loaded, and what was said of it
 
-    def __init__(self) -> None:
-        self.seconds = 0.0
-        self.updates = 0
+    :param updates: Number of updates
+    :param seconds: Time that the first of them took
+    :param value_bound: Value of the largest reward so far, whatever its sign, if it came at every step
+    :param value_ceiling: The same of the highest, or 0 where all are negative, as an episode may end
+    :param warned_of_values: Whether ``V`` was said to run away
+    :param judged_rewards: Whether the first rewards were judged
+    """
 
-    def thread_warning(
-        self, seconds: float, updates: int, parameters: Sequence[th.Tensor], batch_size: int
-    ) -> str | None:
+    updates: int = 0
+    seconds: float = 0.0
+    value_bound: float = 0.0
+    value_ceiling: float = 0.0
+    warned_of_values: bool = False
+    judged_rewards: bool = False
+
+    def judge_rewards(self, rewards: np.ndarray, warm_up: float, is_full: bool) -> str | None:
         """
-        What to say once of updates that are slow because several threads share the work of small networks.
+        What to say once of the rewards of the warm-up, or of the first ones without it; see :func:`reward_warning`
+
+        :param rewards: Rewards so far
+        :param warm_up: Number of steps of the warm-up
+        :param is_full: Whether the replay buffer holds no more than these
+        :return: The warning; none if there is nothing to say
+        """
+        enough = max(warm_up or REWARDS_WITHOUT_WARM_UP, FEWEST_REWARDS)
+        if self.judged_rewards or (rewards.size < enough and not is_full):
+            return None
+        self.judged_rewards = True
+        return reward_warning(rewards)
+
+    def judge_value(
+        self, largest: float, forever: tuple[float, float], gamma: float, has_w: bool
+    ) -> tuple[float | None, str | None]:
+        """
+        How near ``V`` comes to the largest value that rewards allow, and what to say once if it is far beyond.
+
+        That value is the ceiling. Where ``V`` exceeds it, the excess counts in units of the bound.
+
+        :param largest: Largest ``V`` of a batch
+        :param forever: Values of the lowest and the highest reward of this batch if they came at every step
+        :param gamma: the discount factor
+        :param has_w: Whether targets take ``W``
+        :return: Ratio that is 1 at the ceiling, none while all rewards are 0; and the warning, none if there is nothing
+            to say
+        """
+        lowest, highest = forever
+        self.value_bound = max(self.value_bound, highest, -lowest)
+        self.value_ceiling = max(self.value_ceiling, highest)
+        if self.value_bound == 0:
+            return None, None
+        ratio = 1 + (largest - self.value_ceiling) / self.value_bound
+        if ratio <= RUNAWAY_RATIO or self.updates <= FRESH_UPDATES or self.warned_of_values:
+            return ratio, None
+        self.warned_of_values = True
+        return ratio, value_warning(largest, self.value_ceiling, self.value_bound, gamma, has_w)
+
+    def judge_time(self, seconds: float, updates: int, parameters: Sequence[th.Tensor], batch_size: int) -> str | None:
+        """
+        What to say once of first updates that are slow because several threads share the work of small networks.
 
         Where other processes keep the cores busy, an operation waits until each of its threads has had its turn. On
         idle cores small networks gain nothing by a second thread.
@@ -100,10 +155,11 @@ class FirstUpdates:
         :param batch_size: Number of transitions in a minibatch
         :return: The warning; none if there is nothing to say
         """
-        if self.updates >= FIRST_UPDATES:
+        were_first = self.updates < FIRST_UPDATES
+        self.updates += updates
+        if not were_first:
             return None
         self.seconds += seconds
-        self.updates += updates
         threads, mean = th.get_num_threads(), self.seconds / self.updates
         is_slow = self.seconds >= SLOW_UPDATE * max(self.updates, FIRST_UPDATES)
         if not is_slow or threads == 1 or not _is_small(parameters, batch_size):

@@ -3,7 +3,7 @@
 from collections.abc import Callable
 from difflib import get_close_matches
 from functools import wraps
-from inspect import Parameter, signature
+from inspect import signature
 from typing import ParamSpec
 
 P = ParamSpec("P")
@@ -35,7 +35,7 @@ def explains_unknown(init: Callable[P, None]) -> Callable[P, None]:
     """
     Decorator for a constructor: its ``TypeError`` for an unknown argument says what to write instead.
 
-    :param init: Constructor; those of subclasses may pass arguments of any name on to it
+    :param init: Constructor
     :return: The constructor
     """
     own = signature(init).parameters
@@ -44,24 +44,12 @@ def explains_unknown(init: Callable[P, None]) -> Callable[P, None]:
     def explaining(*arguments: P.args, **named: P.kwargs) -> None:
         unknown = next((name for name in named if name not in own), None)
         if unknown is not None:
-            made, given = type(arguments[0]), list(own)[: len(arguments)]
-            known = [name for name in _names(made, explaining) if name not in given]
-            raise TypeError(f"{made.__name__}.__init__() got an unexpected keyword argument {_advice(unknown, known)}")
+            known = [name for name in list(own)[len(arguments) :] if not name.startswith("_")]
+            advice = _advice(unknown, known)
+            raise TypeError(f"{type(arguments[0]).__name__}.__init__() got an unexpected keyword argument {advice}")
         init(*arguments, **named)
 
     return explaining
-
-
-def _names(made: type, last: Callable[..., None]) -> list[str]:
-    """Names of the arguments of a class and of those that it passes them on to, up to a last constructor."""
-    constructors: list[Callable[..., None]] = [
-        vars(parent)["__init__"] for parent in made.__mro__ if "__init__" in vars(parent)
-    ]
-    names: dict[str, None] = {}
-    for constructor in constructors[: constructors.index(last) + 1]:
-        parameters = signature(constructor).parameters.values()
-        names |= dict.fromkeys(one.name for one in parameters if one.kind is not Parameter.VAR_KEYWORD)
-    return [name for name in names if not name.startswith("_")]
 
 
 def _advice(unknown: str, known: list[str]) -> str:

@@ -24,6 +24,7 @@ from sarah.episode.result import METRICS
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import TASKS, Task
 from sarah.episode.tick import Tick
+from sarah.logs.topics import TOPICS
 from sarah.ranges import ranges_of
 from sarah.robot.description import JOINT_TYPES, describe_robot
 from sarah.robot.dimensions import known_dimensions
@@ -151,6 +152,18 @@ def tick_part() -> Iterator[str]:
     yield "x points to the robot's right, y forward and z up. " + markdown(f"Actuators: {', '.join(ACTUATED_JOINTS)}.")
 
 
+def topics_part() -> Iterator[str]:
+    """A table of the topics of a log, and one of the fields of each topic."""
+    names = {topic.name: f"`{topic.name}`" for topic in TOPICS.values()}
+    yield from table(
+        ["topic", "schema", "a message for"], ([names[t.name], f"`{t.schema}`", t.meaning] for t in TOPICS.values())
+    )
+    for topic in TOPICS.values():
+        yield f"### {names[topic.name]}\n"
+        rows = [[f"`{field.name}`", field.unit or field.kind, field.meaning] for field in topic.fields]
+        yield from table(["field", "unit", "meaning"], rows)
+
+
 POSITIVE = {
     "hip_abduction": "the foot goes to the left: outward on the left leg, inward on the right",
     "hip_flexion": "the foot goes forward",
@@ -222,5 +235,6 @@ PARTS: dict[str, Callable[[], Iterable[str]]] = {
     "settings": settings_part,
     "targets": targets_part,
     "tick": tick_part,
+    "topics": topics_part,
 }
 """What writes each part."""

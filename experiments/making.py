@@ -87,17 +87,19 @@ def _check_counts(experiment: Experiment) -> None:
 
 
 def _chosen(cases: Sequence[Row], only: Iterable[str]) -> list[Row]:
-    """Cases with the given values."""
-    kept = list(cases)
+    """Cases with the given values; of several values of a column, with any of them."""
+    wanted: dict[str, set[str]] = {}
     for condition in only:
         key, equals, value = condition.partition("=")
-        if not equals or key not in cases[0]:
+        if not equals:
+            raise ConfigurationError(f"--only takes KEY=VALUE, not {condition!r}")
+        if key not in cases[0]:
             raise ConfigurationError(f"--only takes KEY=VALUE; {unknown_name('key', key, cases[0])}")
         allowed = list(dict.fromkeys(cell(case[key]) for case in cases))
         if value not in allowed:
             raise ConfigurationError(f"--only: {unknown_name(key, value, allowed)}")
-        kept = [case for case in kept if cell(case[key]) == value]
-    return kept
+        wanted.setdefault(key, set()).add(value)
+    return [case for case in cases if all(cell(case[key]) in values for key, values in wanted.items())]
 
 
 def _begun(module: ModuleType, folder: Path, command: str) -> Result:

@@ -18,7 +18,7 @@ LONGEST_SHOWN = 100
 """Largest number of characters of a value in a message."""
 SOURCES = (".json", ".py", ".xacro")
 """Endings of the names of files that are hashed."""
-SHOWING = ("cli", "pictures", "reports", "viewer")
+SHOWING = ("cli", "logs", "pictures", "reports", "viewer")
 """Parts of this package that ask and show. No result depends on them, so they are not hashed."""
 
 

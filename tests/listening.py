@@ -12,7 +12,8 @@ from sarah.control.pattern_generator import SteppingParameters
 from sarah.control.supervisor import Supervisor
 from sarah.control.watches import SupervisorSettings
 from sarah.drivers.driver import Driver, TimedReading
-from sarah.drivers.loop import ControlLoop, RealTime
+from sarah.drivers.loop import ControlLoop
+from sarah.drivers.real_time import RealTime
 from sarah.remote.endpoints import Endpoint
 from sarah.remote.requests import LearnedWith
 from sarah.remote.server import Server

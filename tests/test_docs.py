@@ -280,3 +280,11 @@ def test_the_page_of_the_library_links_every_public_name() -> None:
             assert getattr(import_module(package), alias) is getattr(home, name)
     public = {f"{package}.{name}" for package in ("sarah", "sarah.agents") for name in import_module(package).__all__}
     assert public - {shown for shown, _ in links} == set()
+
+
+def test_a_loop_logs_and_its_log_is_read(tmp_path: Path, monkeypatch: MonkeyPatch, capsys: CaptureFixture[str]) -> None:
+    monkeypatch.chdir(tmp_path)
+    run_block("how_to/log.md", 1)
+    (tmp_path / "run.mcap").rename("push.mcap")
+    assert run_block("how_to/log.md")["values"]["state"] == "standing"
+    assert re.fullmatch(r"0 None\n20\S+ whole\n", capsys.readouterr().out)

@@ -44,8 +44,9 @@ class Watched(NAF):
 
     highest_ratio = 0.0
 
-    def _check_values(self, *values: float) -> None:
-        super()._check_values(*values)
+    def train(self, gradient_steps: int, batch_size: int = 100) -> None:
+        """Train, and look at the log."""
+        super().train(gradient_steps, batch_size)
         self.highest_ratio = max(self.highest_ratio, self.logger.name_to_value["train/value_over_bound"])
 
 

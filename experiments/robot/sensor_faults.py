@@ -85,7 +85,7 @@ class SensorFaults(Experiment):
 
         robot, loop = simulated_loop(replace(SHIPPED, seed=seed, config=config), plan, observers=[observe])
         loop.run()
-        robot.off()
+        robot.close()
         seconds = robot.seconds - STAND_SECONDS - plan.begin
         return Outcome(robot.ended == "time_limit", len(after) / max(seconds, 1.0), stops[0] if stops else None)
 
@@ -124,4 +124,5 @@ def stops(rows: DataFrame) -> str:
     names = [f"{words}, {name}" for name in ENGINES.values() for words in ("stopped", "median time, s")]
     wide.columns = names
     caption = f"Robots of {FULL.seeds} that the supervisor stops, and the median time from the fault until it does."
-    return table(wide.reset_index(), ["fault", *names], caption, **{"stopped": ".0f", "time, s": ".2f"})
+    formats = {name: ".0f" if name.startswith("stopped") else ".2f" for name in names}
+    return table(wide.reset_index(), ["fault", *names], caption, **formats)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json as json_format
 import shlex
 import sys
@@ -31,7 +32,18 @@ if TYPE_CHECKING:
     from sarah.episode.workers import Workers
 
 COMMAND = "sarah-eval"
-NOT_OF_VIEW = ("robustness", "terrain", "out", "forces", "episodes", "first-seed", "json", "workers", "scheduler")
+NOT_OF_VIEW = (
+    "robustness",
+    "terrain",
+    "out",
+    "forces",
+    "episodes",
+    "first-seed",
+    "json",
+    "log",
+    "workers",
+    "scheduler",
+)
 """Options that the viewer has not."""
 REPLACED = {
     "robustness": (
@@ -58,6 +70,7 @@ class EvalOptions(UnseenOptions):
         ground, for 10 s without a push, and with one of 75 N for 30 kg at 2 to 3 s
     :param out: folder for the table and the picture of --robustness or --terrain
     :param json: whether to print one JSON object
+    :param log: MCAP file for a log of the first episode, which must be new; sarah-log reads it
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
@@ -66,6 +79,7 @@ class EvalOptions(UnseenOptions):
     out: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     forces: tuple[Annotated[float, Within(0.01, 10_000.0, "N")], ...] = ()
     json: bool = False
+    log: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
 
     def __post_init__(self) -> None:
         """Refuse numbers outside their ranges, and outputs that exclude each other."""
@@ -75,6 +89,8 @@ class EvalOptions(UnseenOptions):
             raise ConfigurationError(f"{tables[0]} prints a table, not JSON: leave --json out")
         if tables and self.out is None:
             raise ConfigurationError(f"{tables[0]} needs a folder for table and picture: --out DIR")
+        if tables and self.log is not None:
+            raise ConfigurationError(f"{tables[0]} has no first episode to log: leave --log out")
         if self.out is not None and not tables:
             raise ConfigurationError("--out is the folder of --robustness or --terrain: give one of them")
 
@@ -106,10 +122,13 @@ def main() -> None:
     from sarah.cli.eval_text import rows_of
     from sarah.episode.evaluation import evaluate
     from sarah.episode.workers import Workers
+    from sarah.logs.simulated import log_episode
     from sarah.runs.config_files import settings_by_key
 
     for path in options.tables:
         prepare_table(path)
+    if options.log is not None:
+        log_episode(dataclasses.replace(spec, seed=options.first_seed), options.log, COMMAND)
     with Workers(options.workers, options.scheduler) as workers:
         if options.robustness:
             _show_robustness(own.config, spec, options, workers)
@@ -144,6 +163,8 @@ def main() -> None:
 
 def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step]:
     first = ("--seed", str(options.first_seed))
+    if options.log is not None:
+        yield "read its log", ("sarah-log", options.log)
     yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW), *first)
     if Path(options.subject).is_dir() and not SESSION.owns(Path(options.subject)):
         typed = [] if options.task is None else ["--task", options.task]

@@ -27,6 +27,7 @@ from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.errors import ConfigurationError, shortened
 from sarah.files import quoted
 from sarah.formats import read_yaml
+from sarah.logs.chunk_file import check_new
 from sarah.number import number
 from sarah.operation.settings import PARAMETERS, Change, OperationConfig, Parameters
 from sarah.runs.kinds import SESSION
@@ -69,6 +70,7 @@ class OperateOptions(EpisodeOptions):
         --minutes adds one
     :param compare_frozen: whether to run the same robot again without learning, with its first parameters throughout,
         and to show both. It takes as long again, and changes nothing in the session
+    :param log: MCAP file for a log of the session from its beginning, which must be new; sarah-log reads it
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
@@ -84,6 +86,7 @@ class OperateOptions(EpisodeOptions):
     resume: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
     extended_from: tuple[float, ...] = ()
     compare_frozen: bool = False
+    log: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
 
 
 @as_command(COMMAND)
@@ -94,16 +97,20 @@ def main() -> None:
         if argument.partition("=")[0].replace("_", "-") in WITHOUT_EFFECT:
             raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")
     options = _parsed(arguments)
+    if options.log is not None:
+        check_new(options.log)
     folder = _begun(options) if options.resume is None else _resumed(options, arguments)
     if folder is None:
         return
+    from sarah.cli.logged import logged
     from sarah.training.operate import compare_frozen, operate
 
     spec = folder.spec()
     print(f"operating for {spec.config.minutes:g} min with learner {spec.learner} into {folder.path}", flush=True)
     if folder.frozen is not None:
         print(f"and then without learning, which takes as long again, into {folder.frozen_path}", flush=True)
-    result = _watched(partial(operate, folder, spec), spec, folder.path)
+    run = partial(operate, folder, spec)
+    result = _watched(run if options.log is None else logged(run, options.log, spec, COMMAND), spec, folder.path)
     frozen = None
     if folder.frozen is not None:
         frozen = _watched(partial(compare_frozen, folder, spec, result), spec, folder.path, "without learning ")

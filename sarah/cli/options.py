@@ -58,10 +58,16 @@ def fail(command: str, message: str) -> NoReturn:
     :param command: name of the command
     :param message: message, which becomes one line
     """
-    line = " ".join(message.split())
-    printable = "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in line)  # of anybody's file
-    print(f"{command}: error: {printable}", file=sys.stderr)
+    print(f"{command}: error: {printable(' '.join(message.split()))}", file=sys.stderr)
     raise SystemExit(USAGE_ERROR)
+
+
+def printable(line: str) -> str:
+    """A line as a terminal may print it, whoever wrote the file that it is from.
+
+    :param line: line, whose control characters are escaped
+    """
+    return "".join(letter if letter.isprintable() else ascii(letter)[1:-1] for letter in line)
 
 
 def _with_both_ends(arguments: Sequence[str], config: Any) -> list[str]:

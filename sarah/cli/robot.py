@@ -4,30 +4,31 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import gc
-import os
+import math
 import sys
-import threading
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
 from sarah.cli.endpoints import endpoint_of, with_endpoint
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
-from sarah.cli.interruption import interruptible
+from sarah.cli.interruption import first_signal_noted
 from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import learned_of
 from sarah.control.hip_law import LOCKED_HIPS
 from sarah.control.pattern_generator import Phase
 from sarah.control.supervisor import State, Supervisor
 from sarah.drivers.driver import Driver
-from sarah.drivers.driver_file import read_driver
+from sarah.drivers.driver_file import mistakes_of, read_driver
 from sarah.drivers.faults import FAULTS
-from sarah.drivers.loop import LATE_SECONDS, ControlLoop, Lockstep, LoopObserver, LoopTick, RealTime, controller_for
-from sarah.drivers.simulated_robot import FaultPlan, simulated_loop
+from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, LoopTick, controller_for
+from sarah.drivers.real_time import LATE_SECONDS, RealTime, undisturbed
+from sarah.drivers.simulated_robot import FaultPlan, SimulatedRobot, simulated_loop
+from sarah.episode.ending import ending_words
+from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
@@ -36,28 +37,30 @@ from sarah.ranges import Within
 from sarah.remote.requests import LARGEST_CHANGE, LearnedWith
 from sarah.remote.server import Server
 
+if TYPE_CHECKING:
+    from sarah.logs.robot_log import RobotLog
+
 COMMAND = "sarah-robot"
 ANYWHERE = 100.0
 """Displacement at which the simulated robot ends, in m: it may go where it wants."""
-PRIORITY = 50
-"""Priority in the real-time scheduling class."""
-SWITCH_SECONDS = 0.0005
-"""Time for which another thread may hold the interpreter, in s."""
 
 
 @dataclass(frozen=True)
 class RobotOptions(EpisodeOptions):
     """Run the controller on a robot: tick by tick, with a supervisor that stops it when something fails.
 
-    Without --driver the robot is simulated. Ctrl-C lets it stop and stand, and a second one ends at once.
+    Without --driver the robot is simulated. It may go where it wants, and nobody pushes it, unless options say
+    otherwise. Ctrl-C lets it stop and stand, and a second one ends at once.
 
     :param subject: run folder; numbers separated by commas, P1 to P5 for stepping, or V1 to V4 for the task balance; or
         the name of shipped parameters: ``paper``, ``stepping`` or ``balance``
     :param driver: file of a robot's driver and its name in there, such as my_robot.py:ROBOT. The file is run
-    :param seconds: time for which it runs, in s; by default until Ctrl-C, or the end of the simulated episode
+    :param seconds: time for which it runs, with the second of standing, in s; by default until Ctrl-C, or the end of
+        the simulated episode
     :param real_time: whether a tick begins each control period by the clock; without it, ticks follow each other as
         fast as they can
     :param stand: whether the robot only stands
+    :param log: file to log to, such as run.mcap; sarah-log reads it
     :param read_only: whether to read and compute without sending anything to the robot
     :param listen: address at which ``sarah-push`` reaches the robot; without an address tcp/127.0.0.1:7447, which is
         open to every user of this machine. Other machines need an address tls/… and certificates
@@ -66,15 +69,17 @@ class RobotOptions(EpisodeOptions):
     :param certificate: for TLS: certificate of the robot, a PEM file
     :param key: for TLS: private key of that certificate, a PEM file
     :param seed: seed of the simulated robot, its sensors and its push
-    :param fault: what fails on the simulated robot, by its name in the table of docs/how_to/real_robot.md
+    :param fault: what fails on the simulated robot, by its name in the table of docs/how_to/real_robot.md, such as
+        ``rate about y: 0``
     :param fault_after: time after standing at which it fails, in s
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     driver: Annotated[str | None, tyro.conf.arg(metavar="FILE:NAME")] = None
-    seconds: Annotated[float, Within(0.1, 1e7, "s")] | None = None
+    seconds: Annotated[float, Within(1.1, 1e7, "s")] | None = None
     real_time: bool = False
     stand: bool = False
+    log: Annotated[Path | None, tyro.conf.arg(metavar="FILE.mcap")] = None
     read_only: bool = False
     listen: Annotated[str | None, tyro.conf.arg(metavar="[ENDPOINT]")] = None
     largest_change: Annotated[float, Within(0.0, 1.0)] = LARGEST_CHANGE
@@ -90,7 +95,7 @@ class RobotOptions(EpisodeOptions):
         super().__post_init__()
         if self.fault not in FAULTS:
             message = unknown_name("fault", self.fault, FAULTS).partition(" (allowed")[0]
-            raise ConfigurationError(f"{message} docs/how_to/real_robot.md has the table of faults")
+            raise ConfigurationError(f"{message} (docs/how_to/real_robot.md has the table, such as 'rate about y: 0')")
         if self.driver is not None and self.fault != "none":
             raise ConfigurationError("--fault is for the simulated robot: leave out --driver or --fault")
         if self.driver is not None and not self.real_time:
@@ -104,59 +109,80 @@ def main() -> None:
     options = parse_episode_options(COMMAND, arguments, RobotOptions(), adapted=_supervised)
     own, _ = learned_of(options.subject, named_task(options.task))
     spec = options.applied_to(own)
-    if options.seconds is not None and options.driver is None:
+    if options.stand and not spec.config.supervisor.enabled:
+        raise ConfigurationError("--stand needs a supervisor: leave --no-supervisor out")
+    if options.listen is not None and not spec.config.supervisor.enabled:
+        raise ConfigurationError("--listen needs a supervisor: leave --no-supervisor out")
+    if options.seconds is not None and options.driver is None:  # it ends by itself
         spec = dataclasses.replace(spec, config=dataclasses.replace(spec.config, time_limit=options.seconds))
-    with (
-        _listening(options, spec) as others,
-        interruptible(COMMAND, "step", "the robot was left as it was") as is_interrupted,
-    ):
-        _run(options, spec, others, is_interrupted)
+    with first_signal_noted(f"{COMMAND}: the robot stops and stands; a second signal ends at once") as is_interrupted:
+        _run(options, spec, is_interrupted)
 
 
 def _supervised(config: EpisodeConfig, subject: str | None) -> EpisodeConfig:
-    """Settings with a supervisor, for a robot that may go where it wants."""
+    """Settings with a supervisor, for a robot that may go where it wants, and that nobody pushes."""
     supervisor = dataclasses.replace(config.supervisor, enabled=True)
-    return dataclasses.replace(config, supervisor=supervisor, box_half_width=ANYWHERE)
+    config = dataclasses.replace(config, supervisor=supervisor, box_half_width=ANYWHERE)
+    return dataclasses.replace(config, push=NO_PUSH) if isinstance(config, PushedConfig) else config
 
 
-def _run(
-    options: RobotOptions, spec: EpisodeSpec, others: Sequence[LoopObserver], is_interrupted: Callable[[], bool]
-) -> None:
+def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], bool]) -> None:
     progress = Progress(spec.config.physics.control_dt)
-    loop = _loop(options, spec, [progress, *others])
-    try:
-        with _real_time() if options.real_time else contextlib.nullcontext():
-            while loop.tick():
-                if options.seconds is not None and loop.ticks * loop.dt >= options.seconds - loop.dt / 2:
-                    break
-                if is_interrupted() and not _still_moves(loop):
-                    break
-    finally:
-        loop.driver.off()
-    progress.report(loop.driver)
+    with contextlib.ExitStack() as stack:
+        server = None if options.listen is None else stack.enter_context(contextlib.closing(_server(options, spec)))
+        loop = _loop(options, spec, [progress] if server is None else [progress, server])
+        values = {**vars(loop.parameters), **vars(loop.balance)}
+        print(", ".join(f"{name} {value:.3g}" for name, value in values.items()), file=sys.stderr)
+        stack.callback(loop.driver.close)
+        if not options.read_only:
+            stack.callback(loop.driver.off)
+        log = None if options.log is None else stack.enter_context(_logged(options, spec, loop))
+        if options.real_time:
+            print(stack.enter_context(undisturbed(() if server is None else (server.thread,))), file=sys.stderr)
+        if options.driver is not None:
+            stack.enter_context(mistakes_of(options.driver))
+        while loop.tick():
+            if options.seconds is not None and progress.seconds >= options.seconds - 1.5 * loop.dt:
+                break
+            if is_interrupted() and not _still_moves(loop):
+                break
+    progress.report(loop.driver, options.real_time)
+    if log is not None and (log.dropped or log.failure):
+        print(f"{log.dropped} messages are not in {options.log}: {log.failure or 'the disk was slow'}", file=sys.stderr)
 
 
-@contextlib.contextmanager
-def _listening(options: RobotOptions, spec: EpisodeSpec) -> Iterator[list[LoopObserver]]:
-    """Context in which others can reach the robot, if the options say so."""
-    if options.listen is None:
-        yield []
-        return
-    if not spec.config.supervisor.enabled:
-        raise ConfigurationError("--listen needs a supervisor: leave --no-supervisor out")
+def _logged(options: RobotOptions, spec: EpisodeSpec, loop: ControlLoop) -> RobotLog:
+    """The log of a loop. It never holds a robot up; a simulation in lockstep waits for it."""
+    from sarah.logs.controller_log import log_loop
+    from sarah.logs.robot_log import RobotLog
+    from sarah.logs.simulated import about_robot
+
+    assert options.log is not None
+    facts = {"driver": options.driver} if options.driver else {"seed": str(options.seed), "fault": options.fault}
+    about = about_robot(spec.config, COMMAND, task=spec.task.reference, subject=options.subject, **facts)
+    log = RobotLog(options.log, about, waits=not options.real_time)
+    log_loop(loop, log, COMMAND)
+    return log
+
+
+def _server(options: RobotOptions, spec: EpisodeSpec) -> Server:
+    """What lets others reach the robot."""
+    assert options.listen is not None
     endpoint = endpoint_of(options.listen, options.authority, options.certificate, options.key)
     robot, dt = LearnedWith.of(spec.config), spec.config.physics.control_dt
-    with contextlib.closing(Server(endpoint, robot, dt, options.largest_change)) as server:
-        print(f"listening at {endpoint.address}", file=sys.stderr)
-        yield [server]
+    server = Server(endpoint, robot, dt, options.largest_change)
+    print(f"listening at {endpoint.address}", file=sys.stderr)
+    return server
 
 
-def _loop(options: RobotOptions, spec: EpisodeSpec, observers: list[LoopObserver]) -> ControlLoop:
+def _loop(options: RobotOptions, spec: EpisodeSpec, observers: Sequence[LoopObserver]) -> ControlLoop:
     """The control loop of the robot that the options name."""
     config, dt = spec.config, spec.config.physics.control_dt
     pacing = RealTime(dt) if options.real_time else None
     if options.driver is None:
         say_engine(config)
+        failing = "" if options.fault == "none" else f", from {1.0 + options.fault_after:g} s on: {options.fault}"
+        print(f"simulated by {config.engine}, seed {options.seed}{failing}", file=sys.stderr)
         plan = FaultPlan(FAULTS[options.fault], options.fault_after)
         _, loop = simulated_loop(dataclasses.replace(spec, seed=options.seed), plan, pacing, observers)
     else:
@@ -165,8 +191,8 @@ def _loop(options: RobotOptions, spec: EpisodeSpec, observers: list[LoopObserver
         controller = controller_for(config, driver.limits)
         loop = ControlLoop(driver, controller, stepping, balance or LOCKED_HIPS, dt, pacing or Lockstep(), observers)
     loop.is_read_only = options.read_only
-    if options.stand and not _still_moves(loop):
-        raise ConfigurationError("--stand needs a supervisor: leave --no-supervisor out")
+    if options.stand:
+        _still_moves(loop)
     return loop
 
 
@@ -180,63 +206,25 @@ def _still_moves(loop: ControlLoop) -> bool:
     return is_moving
 
 
-@contextlib.contextmanager
-def _real_time() -> Iterator[None]:
-    """Context in which this process is disturbed as little as the system grants."""
-    switch = sys.getswitchinterval()
-    with _scheduled():
-        sys.setswitchinterval(SWITCH_SECONDS)
-        gc.freeze()
-        gc.disable()
-        try:
-            yield
-        finally:
-            gc.enable()
-            gc.unfreeze()
-            sys.setswitchinterval(switch)
-
-
-@contextlib.contextmanager
-def _scheduled() -> Iterator[None]:
-    """Context in the real-time scheduling class, where the system has one and grants it.
-
-    Other Python threads come right behind this one: the loop may wait for one of them to give the interpreter back.
-    """
-    threads = [thread.native_id or 0 for thread in threading.enumerate()]
-    try:
-        before = {thread: (os.sched_getscheduler(thread), os.sched_getparam(thread)) for thread in threads}
-        for thread in threads:
-            behind = thread != threading.get_native_id()
-            os.sched_setscheduler(thread, os.SCHED_FIFO, os.sched_param(PRIORITY - behind))
-    except (OSError, AttributeError) as error:
-        print(f"real-time scheduling is not granted ({error}): other processes can make ticks late", file=sys.stderr)
-        yield
-        return
-    print(f"real-time scheduling: SCHED_FIFO, priority {PRIORITY}", file=sys.stderr)
-    try:
-        yield
-    finally:
-        for thread, (policy, parameter) in before.items():
-            with contextlib.suppress(ProcessLookupError):  # it may have ended
-                os.sched_setscheduler(thread, policy, parameter)
-
-
 class Progress:
     """Observer that prints a line a second, and what happened at the end.
 
     :param dt: control period, in s
     """
 
+    seconds: float
+    """Time of the last tick since the loop began, in s."""
+
     def __init__(self, dt: float) -> None:
         self._dt = dt
         self._next = 1.0
         self._ticks = self._late = self._steps = self._steps_before = 0
-        self._worst = self._seconds = 0.0
+        self._worst = self.seconds = 0.0
 
     def __call__(self, tick: LoopTick) -> None:
         """Count a tick, and print what the supervisor did."""
         self._ticks += 1
-        self._seconds = tick.seconds
+        self.seconds = tick.seconds
         if tick.late_seconds > LATE_SECONDS:
             self._late += 1
         self._worst = max(self._worst, tick.late_seconds)
@@ -253,20 +241,24 @@ class Progress:
         """Print a line of progress on standard error."""
         controller, steps = tick.controller, self._steps - self._steps_before
         self._steps_before = self._steps
-        state = controller.state.value if isinstance(controller, Supervisor) else "unsupervised"
-        phase = "" if controller.phase is Phase.STAND else f", {controller.phase.value}"
-        print(
-            f"{tick.seconds:8.2f} s  {state}{phase}; {steps} steps per second; tilt {controller.tilt:+.2f} m/s²; "
-            f"{self._late} late ticks",
-            file=sys.stderr,
-        )
+        words = ["unsupervised"]
+        if isinstance(controller, Supervisor):
+            words = [controller.state.value, f"tilt {math.degrees(controller.torso_tilt):.0f}°"]
+        words[0] += "" if controller.phase is Phase.STAND else f", {controller.phase.value}"
+        words += [f"{steps} steps per second", f"{self._late} late ticks"]
+        print(f"{tick.seconds:8.2f} s  {'; '.join(words)}", file=sys.stderr)
 
-    def report(self, driver: Driver) -> None:
+    def report(self, driver: Driver, is_real_time: bool) -> None:
         """Print what happened.
 
         :param driver: driver of the robot
+        :param is_real_time: whether ticks had deadlines
         """
-        print(f"{self._ticks} ticks in {self._seconds + self._dt:.2f} s, {self._steps} steps")
-        print(f"{self._late} ticks later than {1000 * LATE_SECONDS:g} ms; the worst by {1000 * self._worst:.2f} ms")
-        if driver.ended:
-            print(f"the robot ended: {driver.ended}")
+        print(f"{self._ticks} ticks in {self.seconds + self._dt:.2f} s, {self._steps} steps")
+        if is_real_time:
+            print(f"{self._late} ticks later than {1000 * LATE_SECONDS:g} ms; the worst by {1000 * self._worst:.2f} ms")
+        if isinstance(driver, SimulatedRobot):
+            x, y, _ = driver.result().final_position
+            print(f"the robot is {100.0 * math.hypot(x, y):.0f} cm from where it began")
+        if driver.ended and driver.ended != "time_limit":
+            print(f"the robot ended: {ending_words(driver.ended)}")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,9 @@ from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, shortened, unknown_name
 from sarah.number import number
 from sarah.runs.kinds import SESSION
+
+LOG_SUFFIX = ".mcap"
+"""Ending of the name of a log."""
 
 if TYPE_CHECKING:
     from sarah.runs.run_episodes import RunEpisode
@@ -24,13 +28,37 @@ def is_shipped(subject: str) -> bool:
     return subject in PARAMETER_SETS and not Path(subject).is_dir()
 
 
+def is_log(subject: str) -> bool:
+    """Whether a subject is the log of a robot.
+
+    :param subject: what an argument names
+    """
+    return subject.endswith(LOG_SUFFIX) and Path(subject).is_file()
+
+
+def check_played(subject: str, logged: EpisodeSpec, wanted: EpisodeSpec | None) -> None:
+    """Refuse settings for a log, which is played as it is.
+
+    :param subject: what an argument names
+    :param logged: specification of the episode that it is
+    :param wanted: specification with the settings of the options; ``None`` if it is another one in any case
+    """
+    if is_log(subject) and wanted != logged:
+        raise ConfigurationError("a log is played as it is: leave settings of episodes and --seed out")
+
+
 def is_there(subject: str) -> bool:
     """Whether there are settings to begin from; what there is not is reported later.
 
     :param subject: what an argument names
     """
     is_run = Path(subject).joinpath("config.yaml").is_file() or SESSION.owns(Path(subject))
-    return subject in PARAMETER_SETS or is_run or ("," in subject and subject.strip(" +-.")[:1].isdigit())
+    return (
+        subject in PARAMETER_SETS
+        or is_run
+        or is_log(subject)
+        or ("," in subject and subject.strip(" +-.")[:1].isdigit())
+    )
 
 
 def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tuple[list[RunEpisode], RunEpisode]:
@@ -56,6 +84,9 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
         return episodes, choose_episode(episodes, which)
     if which is not None:
         raise ConfigurationError("--which is for a run folder")
+    if is_log(subject):
+        logged = _logged_episode(Path(subject))
+        return [logged], logged
     if subject in PARAMETER_SETS:
         given = RunEpisode(subject, f"{subject} · seed 0", PARAMETER_SETS[subject].spec)
         if task not in (None, given.spec.task):
@@ -70,6 +101,15 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
             f"{shortened(subject)} is neither a run folder, nor numbers separated by commas: {names}"
         )
     return [given], given
+
+
+def _logged_episode(path: Path) -> RunEpisode:
+    """The motion of a logged robot, as an episode to look at."""
+    from sarah.logs.played import played, spec_of_log
+    from sarah.runs.run_episodes import RunEpisode
+
+    spec = spec_of_log(path)
+    return RunEpisode(path.name, f"log {path.name}", spec, recorded=partial(played, path, spec.robot))
 
 
 def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEpisode:

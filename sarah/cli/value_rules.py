@@ -11,7 +11,7 @@ from typing import Annotated, Any, Union, get_args
 import docstring_parser
 import tyro
 
-from sarah.control.watches import SupervisorSettings
+from sarah.control.supervisor_settings import SupervisorSettings
 from sarah.episode.robot_settings import RobotSettings
 from sarah.episode.tasks import Task, load_task
 from sarah.number import number, whole_number

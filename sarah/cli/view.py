@@ -17,7 +17,7 @@ from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.former_names import with_out
 from sarah.cli.next_steps import say_next, to_open
 from sarah.cli.options import as_command, named_task, say_engine
-from sarah.cli.subjects import episodes_of, is_shipped
+from sarah.cli.subjects import check_played, episodes_of, is_shipped
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.spec import EpisodeSpec
 from sarah.errors import ConfigurationError
@@ -37,8 +37,8 @@ class ViewOptions(EpisodeOptions):
     """Play episodes on a page in the browser, where sliders change all parameters and a button pushes the robot.
 
     :param subject: run folder, of a training that need not be finished; numbers separated by commas, P1 to P5 for
-        stepping, or V1 to V4 for the task balance; or the name of shipped parameters: ``paper``, ``stepping`` or
-        ``balance``, which comes back from a push
+        stepping, or V1 to V4 for the task balance; the name of shipped parameters: ``paper``, ``stepping`` or
+        ``balance``, which comes back from a push; or a log, whose motion is estimated from its sensors
     :param which: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
         episodes.csv; by default ``learned``, or ``best`` if the training is not finished
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
@@ -48,7 +48,7 @@ class ViewOptions(EpisodeOptions):
     :param port: port to serve the page at; the next free one if it is taken
     """
 
-    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
+    subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME|LOG]")] = "balance"
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: int | None = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
@@ -66,6 +66,7 @@ def main() -> None:
     task = named_task(options.task)
     choices, chosen = episodes_of(options.subject, options.which, task)
     changed = options.applied_to(chosen.spec)
+    check_played(options.subject, chosen.spec, changed if options.seed is None else None)
     if changed != chosen.spec:
         choices = [choice.of(_changed_as(choice.spec, chosen.spec, changed)) for choice in choices]
         chosen = chosen.of(changed)

@@ -3,7 +3,8 @@
 It has four states::
 
     STANDING   the targets are zero: before the first step, and after a stop until it is asked to step
-    STEPPING   the pattern generator moves the targets, and the watches look
+    STEPPING   the pattern generator moves the targets, and the watches look; while readings are missing, the targets
+               go to zero
     STOPPING   the targets go to zero, as fast as the controller moves them
     FALLEN     the targets stay where they are
 
@@ -20,7 +21,8 @@ from typing import NamedTuple
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters
 from sarah.control.pattern_generator import PatternGenerator, Phase, PhaseChange, SteppingParameters
-from sarah.control.watches import STANDARD_SUPERVISOR, SupervisorSettings, Watches
+from sarah.control.supervisor_settings import STANDARD_SUPERVISOR, SupervisorSettings
+from sarah.control.watches import Watches
 from sarah.robot.filters import ramped
 from sarah.robot.reading import GRAVITY, SensorReading, Side, Targets
 
@@ -28,6 +30,8 @@ NOTHING = SensorReading((math.nan,) * 3, (math.nan,) * 3, (math.nan,) * 4, (math
 """Reading of which no signal has come: all of them keep their last values."""
 UNHEARD = NOTHING._replace(acceleration=(math.nan, math.nan, GRAVITY))
 """What the controller is given then: a stuck vertical acceleration could look like a fall."""
+STANDING_TARGETS: Targets = (0.0,) * 6
+"""Targets of a standing robot."""
 PROVEN_SECONDS = 5.0
 """Time of stepping after which new parameters count as working, in s."""
 
@@ -90,17 +94,18 @@ class Supervisor:
         self.asked, self.constants = (parameters, balance), constants
         self._proven: tuple[SteppingParameters, BalanceParameters] | None = None
         self.state_change = None
+        self.targets = STANDING_TARGETS
         self._begin()
 
     def _begin(self) -> None:
         """Stand, with a new generator that steps after its second of standing."""
         self.generator = PatternGenerator(*self.asked, self._dt, self._limits, self.constants)
-        self.targets = self.generator.targets
         self.state = State.STANDING
         self._watches = Watches(self._settings, self._dt, self.constants)
         self._steps_when_asked, self._stop_asked = True, ""
         self._stepped_seconds = 0.0
         self._before = NOTHING
+        self._unheard, self._is_paused, self._is_catching_up = 0.0, False, self.targets != STANDING_TARGETS
 
     def set_parameters(
         self, parameters: SteppingParameters | None = None, balance: BalanceParameters | None = None
@@ -145,11 +150,16 @@ class Supervisor:
             return None
         if reading is None or age > self._settings.stale_seconds:
             reading = NOTHING
-        heard = reading if self._is_new(reading) else UNHEARD
-        generator = self.generator
-        targets, phase = self.targets, generator.phase
-        change = generator.tick(heard, seconds)
         passed = self._dt if seconds is None else seconds
+        is_new = self._is_new(reading)
+        self._unheard = 0.0 if is_new else self._unheard + passed
+        if self._unheard > self._settings.stale_seconds and self.state is State.STEPPING:
+            self._pause(reading, passed)
+            return None
+        self._is_paused = False
+        heard = self._without_lost_joints(reading if is_new else UNHEARD)
+        generator, targets = self.generator, self.targets
+        phase, change = generator.phase, generator.tick(heard, seconds)
         wrong = self._stop_asked or self._watches.tick(reading, heard, passed, targets, phase, change)
         if change is not None and change.ended is Phase.STAND:
             self._enter(State.STEPPING, "stood for a second")
@@ -162,8 +172,34 @@ class Supervisor:
         else:
             self._approve(passed)
         if self.state in (State.STANDING, State.STEPPING):
-            self.targets = generator.targets
+            self._follow(generator.targets)
         return change
+
+    def _pause(self, reading: SensorReading, seconds: float) -> None:
+        """Stand while there is nothing to act on; the generator waits."""
+        wrong = self._stop_asked or self._watches.signals.tick(reading, seconds)
+        if not self._is_paused:
+            self._is_paused = self._is_catching_up = True
+            self._enter(self.state, "no new reading: the targets go to zero until there is one")
+        self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
+        if wrong:
+            self._react(wrong)
+
+    def _follow(self, goals: Targets) -> None:
+        """Take the generator's targets, after a pause at the speeds of the controller."""
+        if self._is_catching_up:
+            self.targets = towards(goals, self.targets, self.constants, self._dt)
+            self._is_catching_up = self.targets != goals
+        else:
+            self.targets = goals
+
+    def _without_lost_joints(self, heard: SensorReading) -> SensorReading:
+        """A reading in which joints that do not follow are at their targets: a wrong sensor is worse than none."""
+        lost = self._watches.lost_joints
+        if not lost:
+            return heard
+        joints = [self.targets[index] if index in lost else joint for index, joint in enumerate(heard.joints)]
+        return heard._replace(joints=tuple(joints))  # type: ignore[arg-type]  # as long
 
     def _is_new(self, reading: SensorReading) -> bool:
         """Whether an inertial signal is another one than before; noise never repeats."""
@@ -174,7 +210,7 @@ class Supervisor:
     def _stand_still(self) -> None:
         """Move the targets on to zero; a robot that has fallen keeps them."""
         if self.state is State.STOPPING:
-            self.targets = towards_zero(self.targets, self.constants, self._dt)
+            self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
             if not any(self.targets):
                 self._enter(State.STANDING, "stopped")
 
@@ -218,6 +254,11 @@ class Supervisor:
         return self.state in (State.STEPPING, State.STOPPING)
 
     @property
+    def torso_tilt(self) -> float:
+        """Tilt of the torso against standing, in rad, as it was when the watches looked last."""
+        return self._watches.torso_tilt
+
+    @property
     def phase(self) -> Phase:
         """Phase of the generator; STAND while the robot stops, stands or has fallen."""
         return self.generator.phase if self.state is State.STEPPING else Phase.STAND
@@ -253,18 +294,19 @@ class Supervisor:
         return self.generator.rate
 
 
-def towards_zero(targets: Targets, constants: ControllerConstants, seconds: float) -> Targets:
-    """Targets that are nearer to those of standing, by as much as the controller moves them.
+def towards(goals: Targets, targets: Targets, constants: ControllerConstants, seconds: float) -> Targets:
+    """Targets that are nearer to others, by as much as the controller moves them.
 
-    :param targets: joint targets, in rad and m
+    :param goals: joint targets to move to, in rad and m
+    :param targets: present joint targets, in rad and m
     :param constants: constants of the controller
     :param seconds: time in which they move, in s
     """
     hip, leg = constants.hip_speed * seconds, constants.leg_speed * seconds
-    a, b, c, d, e, f = targets
+    (a, b, c, d, e, f), (to_a, to_b, to_c, to_d, to_e, to_f) = targets, goals
     return (
-        ramped(a, 0.0, hip), ramped(b, 0.0, hip), ramped(c, 0.0, hip), ramped(d, 0.0, hip),
-        ramped(e, 0.0, leg), ramped(f, 0.0, leg),
+        ramped(a, to_a, hip), ramped(b, to_b, hip), ramped(c, to_c, hip), ramped(d, to_d, hip),
+        ramped(e, to_e, leg), ramped(f, to_f, leg),
     )  # fmt: skip
 
 

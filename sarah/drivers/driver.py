@@ -7,8 +7,9 @@ from abc import ABC, abstractmethod
 from collections.abc import Sequence
 from typing import NamedTuple
 
-from sarah.control.hip_law import NO_LIMITS
-from sarah.robot.reading import SensorReading, Targets
+from sarah.errors import ConfigurationError, shortened
+from sarah.number import is_number, plain
+from sarah.robot.reading import STANDING, SensorReading, Targets
 
 
 class TimedReading(NamedTuple):
@@ -28,7 +29,7 @@ class Driver(ABC):
     Neither may block for longer than a control period: the control loop calls both in each tick.
     """
 
-    limits: Sequence[tuple[float, float]] = NO_LIMITS
+    limits: Sequence[tuple[float, float]]
     """Lowest and highest position of the joints in the order of ``ACTUATED_JOINTS``, in rad and m."""
     ended: str = ""
     """Reason for which the robot takes no more targets, such as its emergency stop; empty while it does."""
@@ -45,8 +46,34 @@ class Driver(ABC):
         """
 
     def off(self) -> None:  # noqa: B027  # most robots have nothing to do here
-        """Let go of the robot, whose loop has ended; here nothing happens."""
+        """Let go of the robot, whose loop has ended, unless nothing was sent to it; here nothing happens."""
+
+    def close(self) -> None:  # noqa: B027  # nor here
+        """Give resources back; here there are none."""
 
     def now(self) -> float:
         """Time of the clock by which readings are taken, in s."""
         return time.monotonic()
+
+
+def check_first(given: object, now: float, dt: float) -> None:
+    """Refuse a driver whose first reading is none.
+
+    :param given: what its ``read`` returned
+    :param now: time of its clock, in s
+    :param dt: control period, in s
+    :raises ConfigurationError: naming what is wrong
+    """
+    if not isinstance(given, TimedReading) or not isinstance(given.reading, SensorReading):
+        raise ConfigurationError(
+            f"read must return TimedReading(SensorReading(…), taken) or None, not {shortened(given)}"
+        )
+    for name, standing in zip(SensorReading._fields, STANDING, strict=True):
+        signal = plain(getattr(given.reading, name))
+        if not isinstance(signal, (list, tuple)) or len(signal) != len(standing) or not all(map(is_number, signal)):
+            raise ConfigurationError(f"{name} of a reading must be {len(standing)} numbers, not {shortened(signal)}")
+    if not is_number(given.taken) or not given.taken <= now + dt:
+        raise ConfigurationError(
+            f"the time at which a reading was taken must be one of the driver's clock, now(), which says {now:.3f} s, "
+            f"not {shortened(given.taken)}"
+        )

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import runpy
 import sys
+from collections.abc import Iterator
 from pathlib import Path
 
 from sarah.drivers.driver import Driver
 from sarah.episode.tasks.task_file import mistake
-from sarah.errors import ConfigurationError, unknown_name
+from sarah.errors import ConfigurationError, SarahError, unknown_name
+from sarah.robot.reading import ACTUATED_JOINTS
 
 
 def read_driver(reference: str) -> Driver:
@@ -30,4 +33,23 @@ def read_driver(reference: str) -> Driver:
     drivers = {key: value for key, value in found.items() if isinstance(value, Driver)}
     if name not in drivers:
         raise ConfigurationError(unknown_name(f"driver in {path}", name, drivers))
+    if not hasattr(drivers[name], "limits"):
+        joints = ", ".join(ACTUATED_JOINTS)
+        raise ConfigurationError(f"{reference} needs limits: lowest and highest position of each of {joints}")
     return drivers[name]
+
+
+@contextlib.contextmanager
+def mistakes_of(reference: str) -> Iterator[None]:
+    """Context in which what a driver raises becomes one line.
+
+    :param reference: file and name of the driver
+    :raises ConfigurationError: naming file, line and mistake
+    """
+    path = reference.rpartition(":")[0]
+    try:
+        yield
+    except SarahError:
+        raise
+    except Exception as error:
+        raise ConfigurationError(mistake(path, error)) from error

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import NamedTuple, Protocol
@@ -11,15 +10,9 @@ from sarah.control.hip_law import LOCKED_HIPS, BalanceParameters
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, PatternGenerator, PhaseChange, SteppingParameters
 from sarah.control.supervisor import Controller, Supervisor
-from sarah.drivers.driver import Driver
+from sarah.drivers.driver import Driver, check_first
 from sarah.episode.robot_settings import RobotSettings
 from sarah.robot.reading import SensorReading
-
-SPIN_SECONDS = 0.0005
-"""Time before a deadline from which the loop waits without sleeping, in s: as inexact as sleeping is."""
-
-LATE_SECONDS = 0.002
-"""Time after its deadline from which a tick counts as late, in s."""
 
 
 class LoopTick(NamedTuple):
@@ -72,37 +65,6 @@ class Lockstep:
         return 0.0
 
 
-class RealTime:
-    """Absolute deadlines, one each control period from the first tick on. Those that have passed are left out.
-
-    :param dt: control period, in s
-    :param clock: clock, in s
-    :param sleep: function that sleeps for a time in s
-    """
-
-    def __init__(
-        self, dt: float, clock: Callable[[], float] = time.monotonic, sleep: Callable[[float], None] = time.sleep
-    ) -> None:
-        self._dt, self._clock, self._sleep = dt, clock, sleep
-        self._deadline: float | None = None
-
-    def wait(self) -> float:
-        """Wait for the next deadline, and return by how much the tick is late, in s."""
-        now = self._clock()
-        if self._deadline is None:
-            self._deadline = now
-            return 0.0
-        self._deadline += self._dt
-        if now < self._deadline:
-            if self._deadline - now > SPIN_SECONDS:
-                self._sleep(self._deadline - now - SPIN_SECONDS)
-            while (now := self._clock()) < self._deadline:
-                pass
-        late = now - self._deadline
-        self._deadline += self._dt * (late // self._dt)
-        return late
-
-
 @dataclass
 class ControlLoop:
     """A robot and its controller, tick by tick. The controller is given its parameters when the robot has stood.
@@ -130,8 +92,10 @@ class ControlLoop:
         """Begin before the first tick."""
         self.ticks = 0
         """Number of ticks so far."""
-        self._standing_ticks = round(STAND_SECONDS / self.dt)
+        self.standing_ticks = round(STAND_SECONDS / self.dt)
+        """Number of ticks before the controller is given its parameters."""
         self._began = self._last = 0.0
+        self._is_checked = False
 
     def tick(self) -> bool:
         """Wait for the next tick, and make it.
@@ -144,12 +108,17 @@ class ControlLoop:
         if driver.ended:
             return False
         now = driver.now()
+        if taken is not None and not self._is_checked:
+            check_first(taken, now, self.dt)
+            self._is_checked = True
         if self.ticks == 0:
             self._began, self._last = now, now - self.dt
-        if self.ticks == self._standing_ticks:
+        if self.ticks == self.standing_ticks:
             controller.set_parameters(self.parameters, self.balance)
         passed, self._last = now - self._last, now
         reading, age = (None, 0.0) if taken is None else (taken.reading, now - taken.taken)
+        if not age >= -self.dt:  # of a clock that has jumped: nobody knows how old it is
+            reading, age = None, 0.0
         change = _decide(controller, reading, passed, age)
         tick = LoopTick(now - self._began, reading, age, controller, change, late)
         for observer in self.observers:

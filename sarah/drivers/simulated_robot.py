@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from sarah.control.hip_law import LOCKED_HIPS
 from sarah.control.pattern_generator import STAND_SECONDS, PhaseChange
-from sarah.control.supervisor import towards_zero
+from sarah.control.supervisor import STANDING_TARGETS, towards
 from sarah.drivers.driver import Driver, TimedReading
 from sarah.drivers.faults import FAULTS, Fault
 from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, LoopTick, Pacing, controller_for
@@ -73,10 +73,10 @@ class SimulatedRobot(Driver):
         self._first_wrong = round((STAND_SECONDS + plan.begin) / self._dt)
         self._standing_ticks = round(STAND_SECONDS / self._dt)
         self._ticks = 0
-        self._targets: Targets = (0.0,) * 6
+        self._targets = STANDING_TARGETS
         self._change: PhaseChange | None = None
         self._heard: SensorReading | None = None
-        self._began = time.monotonic()
+        self._began: float | None = None
 
     @property
     def seconds(self) -> float:
@@ -84,19 +84,23 @@ class SimulatedRobot(Driver):
         return self._ticks * self._dt
 
     def now(self) -> float:
-        """Simulated time in lockstep, or time since it was made, in s."""
-        return self.seconds if self._is_lockstep else time.monotonic() - self._began
+        """Simulated time in lockstep, or time since somebody asked for it first, in s."""
+        if self._is_lockstep:
+            return self.seconds
+        self._began = time.monotonic() if self._began is None else self._began
+        return time.monotonic() - self._began
 
     def read(self) -> TimedReading | None:
         """Let time pass, and read the sensors; ``None`` once the episode has ended."""
         if self._heard is None:
+            self.now()  # from here on time passes
             return self._sensed()
         self._advance()
         sent = self._ticks
         while not self.ended and (self._is_missed() or self._has_fallen_behind()):
             self._sensed()
             if (self._ticks - sent) * self._dt >= self._plan.fault.to_zero_after:
-                self._targets = towards_zero(self._targets, self._constants, self._dt)
+                self._targets = towards(STANDING_TARGETS, self._targets, self._constants, self._dt)
             self._change = None
             self._advance()
         return self._sensed()
@@ -116,7 +120,7 @@ class SimulatedRobot(Driver):
         """Result of the episode so far."""
         return self.episode.result()
 
-    def off(self) -> None:
+    def close(self) -> None:
         """Give the physics engine's resources back."""
         self.episode.close()
 

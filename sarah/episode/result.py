@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 from sarah.episode.gait import GaitMetrics
 from sarah.episode.metric import Metric, metric
@@ -48,6 +48,8 @@ class EpisodeResult(MotionMetrics, GaitMetrics, ScoreMetrics):  # whose fields c
     """
 
     trace: Trace | None = field(default=None, repr=False, compare=False)
+    unknown: ClassVar[frozenset[str]] = frozenset()
+    """Names of the metrics that it does not tell, whose values mean nothing."""
 
     def __post_init__(self) -> None:
         """Refuse numbers that are not finite, from which nobody could learn."""

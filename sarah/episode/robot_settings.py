@@ -8,7 +8,7 @@ from typing import Annotated, Any, TypeVar
 
 from sarah.control.constants import ControllerConstants
 from sarah.control.pattern_generator import STAND_SECONDS
-from sarah.control.watches import SupervisorSettings
+from sarah.control.supervisor_settings import SupervisorSettings
 from sarah.errors import ConfigurationError, check_type
 from sarah.number import is_number, plain
 from sarah.ranges import Within, check_ranges, ranges_of, types_of

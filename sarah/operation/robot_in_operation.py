@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import random
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from sarah.control.pattern_generator import STAND_SECONDS
@@ -14,7 +14,7 @@ from sarah.episode.push import Push, draw_push
 from sarah.episode.recording import Recording
 from sarah.episode.result import EpisodeResult
 from sarah.episode.robot_settings import conditions_of
-from sarah.episode.running_robot import RunningRobot
+from sarah.episode.running_robot import Observer, RunningRobot
 from sarah.operation.settings import BOX, OperationConfig, Parameters, controller_parameters
 from sarah.operation.window import Window, WindowRecord
 from sarah.recorded.journal import Journal
@@ -34,6 +34,7 @@ class RobotInOperation:
     :param seed: seed of robot, world, noise and pushes
     :param watch: function that is called with every window
     :param journal: journal of the windows, of which those that it knows are not simulated again
+    :param observers: further records of what the robot does, in each window that is not known, with standing before it
     """
 
     def __init__(
@@ -42,6 +43,7 @@ class RobotInOperation:
         seed: int,
         watch: Callable[[Window], None] | None = None,
         journal: Journal | None = None,
+        observers: Sequence[Observer] = (),
     ) -> None:
         self.config = config
         self.seconds = 0.0
@@ -51,6 +53,7 @@ class RobotInOperation:
         self._seed = seed
         self._watch = watch
         self._journal = journal
+        self._observers = tuple(observers)
         self._stages_over = 0
         self._robot: RunningRobot | None = None
         self._changes = 0
@@ -58,8 +61,8 @@ class RobotInOperation:
         self._since_standing: list[Window] = []
 
     def __getstate__(self) -> dict[str, Any]:
-        """State of a copy, whose robot runs the windows since it stood up again before its next one."""
-        return {**vars(self), "_robot": None, "_since_standing": list(self._since_standing)}
+        """State of a copy, whose robot runs the windows since it stood up again before its next one, unobserved."""
+        return {**vars(self), "_robot": None, "_since_standing": list(self._since_standing), "_observers": ()}
 
     @property
     def is_over(self) -> bool:
@@ -149,6 +152,7 @@ class RobotInOperation:
         noise = random.Random(f"noise {self._seed} {self._stands}").getrandbits(64)
         conditions = dataclasses.replace(conditions, sensors=dataclasses.replace(conditions.sensors, seed=noise))
         robot = RunningRobot(config, self._seed, conditions=conditions)
+        robot.observers = () if self._since_standing else self._observers
         robot.stand()
         return robot
 
@@ -158,13 +162,20 @@ class RobotInOperation:
         if self._robot is None:
             self._robot = self._standing()
             for before in self._since_standing:  # known windows, which led to where the robot is now
-                self._run(self._robot, before.parameters, before.begin, before is self._since_standing[0], False)
-        window, result = self._run(self._robot, parameters, self.seconds, not self._since_standing, record)
+                self._run(self._robot, before.parameters, before.begin, before is self._since_standing[0])
+        stands = not self._since_standing
+        window, result = self._run(self._robot, parameters, self.seconds, stands, record, self._observers)
         self._count(window)
         return window, result
 
     def _run(
-        self, robot: RunningRobot, parameters: Parameters, begin: float, stands: bool, record_trace: bool
+        self,
+        robot: RunningRobot,
+        parameters: Parameters,
+        begin: float,
+        stands: bool,
+        record_trace: bool = False,
+        observers: Sequence[Observer] = (),
     ) -> tuple[Window, EpisodeResult | None]:
         dt = robot.config.physics.control_dt
         settle, measure = round(self.config.settle_seconds / dt), round(self.config.measure_seconds / dt)
@@ -173,7 +184,7 @@ class RobotInOperation:
         first = round((begin + stood) / dt)
         record = WindowRecord(robot, config, settle, measure)
         recording = Recording(robot, first * dt, record.true) if record_trace else None
-        robot.observers = (record,) if recording is None else (record, *recording.observers)
+        robot.observers = (record, *(() if recording is None else recording.observers), *observers)
         robot.generator.set_parameters(*controller_parameters(parameters))
         if isinstance(robot.generator, Supervisor):  # if it has stopped, each window asks it to step again
             robot.generator.step()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import textwrap
 from functools import lru_cache
 from pathlib import Path
@@ -73,6 +74,8 @@ class Overlay:
             ("steps per second", f"{trace.steps_per_second[tick]:.1f}", INK),
             ("score so far", f"{trace.score[tick]:.2f}", INK),
         ]
+        if math.isnan(trace.score[tick]):  # nobody knows it of a logged robot
+            rows.pop()
         y = 1.5 * unit
         for label, value, colour in rows:
             pen.text((1.5 * unit, y), label, font=_font(0.85 * unit), fill=PALE_INK)

@@ -7,7 +7,8 @@ from collections import deque
 from collections.abc import Callable
 
 from sarah.control.supervisor import Supervisor
-from sarah.drivers.loop import LATE_SECONDS, LoopTick
+from sarah.drivers.loop import LoopTick
+from sarah.drivers.real_time import LATE_SECONDS
 from sarah.operation.settings import PARAMETERS
 from sarah.remote.answers import Telemetry
 from sarah.remote.slot import present

@@ -54,8 +54,8 @@ class Server:
         except BaseException:
             self._session.close()
             raise
-        self._thread = threading.Thread(target=self._serve, name="sarah-remote", daemon=True)
-        self._thread.start()
+        self.thread = threading.Thread(target=self._serve, name="sarah-remote", daemon=True)
+        self.thread.start()
 
     def _listen(self) -> None:
         from zenoh import CongestionControl, handlers
@@ -87,7 +87,7 @@ class Server:
         :param reason: what they are told
         """
         self._is_closed = True
-        self._thread.join()  # from here on nothing arrives
+        self.thread.join()  # from here on nothing arrives
         self._slot.close(reason)
         for asked in self._arrived:
             asked.reply(Answer(Outcome.ENDED, reason))

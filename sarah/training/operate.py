@@ -6,6 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 
+from sarah.episode.running_robot import Observer
 from sarah.errors import TrainingInterruptedError, check_type
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import PARAMETERS, Parameters
@@ -48,12 +49,14 @@ def run_session(
     spec: SessionSpec,
     watch: Callable[[Window], None] = lambda window: None,
     journal: Journal | None = None,
+    observers: Sequence[Observer] = (),
 ) -> SessionResult:
     """Operate a robot from standing to the end of the operation's time.
 
     :param spec: specification, which determines the result: the same one gives the same bytes in any process
     :param watch: function that is called with every window
     :param journal: journal of the session, whose windows are not simulated again; without one nothing is recorded
+    :param observers: further records of what the robot does, in each window that is simulated
     :return: the result
     :raises ResumeError: if the learner asks for other parameters than a window of the journal has
     """
@@ -66,7 +69,7 @@ def run_session(
             with outside():
                 watch(window)
 
-        robot = RobotInOperation(spec.config, spec.seed, watch_outside, journal)
+        robot = RobotInOperation(spec.config, spec.seed, watch_outside, journal, observers)
         try:
             parameters = LEARNERS[spec.learner](robot, spec.parameters, spec.seed)
         finally:
@@ -79,6 +82,7 @@ def operate(
     spec: SessionSpec,
     watch: Callable[[Window], None] = lambda window: None,
     interrupted: Callable[[], bool] = lambda: False,
+    observers: Sequence[Observer] = (),
 ) -> SessionResult:
     """Run a session, or go on with it, and write its folder.
 
@@ -86,6 +90,7 @@ def operate(
     :param spec: specification of the session
     :param watch: function that is called with every window, also with those that are known
     :param interrupted: function that says after every window whether to stop
+    :param observers: further records of what the robot does, in each window that is simulated
     :return: the result
     :raises ResumeError: if the folder was begun with another specification, code or versions, or is in use
     :raises TrainingInterruptedError: if ``interrupted`` asks to stop
@@ -108,7 +113,7 @@ def operate(
                 raise TrainingInterruptedError("the session was interrupted")
 
         try:
-            result = run_session(spec, add, journal)
+            result = run_session(spec, add, journal, observers)
             journal.check_asked()
         finally:
             if events is not None:

@@ -32,8 +32,10 @@ def comparison(shown: EpisodeResult, before: EpisodeResult | None, noted_score: 
     rows = [("", "now", "before"), ("", _ending(shown), "" if before is None else _ending(before))]
     for name, metric in METRICS.items():
         if metric.statistics:
-            now, then = (one and metric.text(getattr(one, name)) for one in (shown, before))
-            rows.append((metric.label, now or "", then or ""))
+            now, then = (
+                metric.text(getattr(one, name)) if one and name not in one.unknown else "" for one in (shown, before)
+            )
+            rows.append((metric.label, now, then))
     lines = [f"<tr><td>{name}</td><td><b>{now}</b></td><td>{old}</td></tr>" for name, now, old in rows]
     note = ""
     if noted_score is not None and abs(noted_score - shown.score) > 1e-9:

@@ -262,7 +262,9 @@ def describe_tick(trace: Trace, tick: int) -> tuple[str, str]:
     :param tick: row of the trace
     """
     side = "right" if trace.stance[tick] > 0 else "left"
+    score = trace.score[tick]
+    scored = "" if math.isnan(score) else f" · score so far {score:.2f}"  # nobody knows it of a logged robot
     return (
         f"{trace.time[tick]:.1f} s · {trace.phase[tick].upper()}, {side} stance leg",
-        f"{trace.steps_per_second[tick]:.1f} steps/s · score so far {trace.score[tick]:.2f}",
+        f"{trace.steps_per_second[tick]:.1f} steps/s{scored}",
     )

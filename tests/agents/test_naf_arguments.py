@@ -2,6 +2,7 @@
 
 import math
 import re
+from inspect import signature
 from typing import Any
 
 import gymnasium as gym
@@ -15,11 +16,11 @@ from sarah.agents import NAF, LocalNAF
 SMALL = {"net_arch": [8]}
 BAD: list[tuple[type[NAF], str, list[Any]]] = [
     (NAF, "gamma", [math.nan, -0.1, 2.0]),
-    (NAF, "tau", [0.0, 2.0]),
+    (NAF, "tau", [-0.1, 2.0]),
     (NAF, "n_steps", [0, 1.5]),
     (NAF, "max_grad_norm", [0.0, math.nan, "1"]),
     (NAF, "batch_size", [0, 2.5, None]),
-    (NAF, "exploration_std", [-0.1, math.inf]),
+    (NAF, "exploration_std", [-0.1, math.inf, "lin_-1", "auto"]),
     (NAF, "buffer_size", [0, 1.5]),
     (NAF, "learning_starts", [-1, "a"]),
     (NAF, "gradient_steps", [-2, 1.5]),
@@ -55,6 +56,7 @@ UNKNOWN = [
     (NAF, {"net_arch": [8]}, "NAF", "net_arch': it goes into policy_kwargs"),
     (NAF, {"xyz": 1}, "NAF", "xyz', allowed are learning_rate, buffer_size, .*, seed, device"),
     (LocalNAF, {"ent_coef": 0.1}, "LocalNAF", "ent_coef': mu is one action and has no entropy, .*"),
+    (NAF, {"policy": "MlpPolicy", "env": "Pendulum-v1", "tua": 1}, "NAF", "tua', did you mean 'tau'[?]"),
     (NAF, {"policy_delay": 2}, "NAF", "policy_delay': there is no actor to delay, as mu is part of Q"),
     (NAF, {"policy_kwargs": {"dropot": 0.1}}, "NAFPolicy", "dropot', did you mean 'dropout'[?]"),
     (NAF, {"policy_kwargs": {"lr": 0.1}}, "NAFPolicy", "lr', allowed are net_arch, .*, dropout, min_curvature"),
@@ -93,9 +95,30 @@ def test_schedules_are_judged_by_their_ends(ends):
 def test_ends_of_the_ranges_are_allowed():
     elite: Any = dict(elite_share=np.float32(1.0), elite_std=0.0, elite_draws=np.int64(1))
     policy: Any = dict(policy_kwargs={**SMALL, "min_curvature": 0}, replay_buffer_kwargs={"temperature": 0})
-    model = LocalNAF("MlpPolicy", "Pendulum-v1", max_grad_norm=math.inf, exploration_std=0, **elite, **policy)
+    model = LocalNAF("MlpPolicy", "Pendulum-v1", tau=0, max_grad_norm=math.inf, exploration_std=0, **elite, **policy)
     schedules = (model.elite_share_schedule, model.elite_std_schedule, model.exploration_schedule)
     assert [schedule(0.5) for schedule in schedules] == [1.0, 0.0, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("value", "said"),
+    [
+        ([0.1, 0.2, 0.3], r"exploration_std must be one number, or as many as an action has: \(2,\), not \(3,\)"),
+        (np.array([0.1, -0.1]), r"each of exploration_std must be a number from 0, not -0\.1"),
+    ],
+)
+def test_bad_deviations_by_dimension(value, said):
+    env = gym.make("Pendulum-v1")
+    env.action_space = gym.spaces.Box(-1, 1, (2,))
+    with pytest.raises(ValueError, match=f"^{said}$"):
+        NAF("MlpPolicy", env, exploration_std=value)
+
+
+def test_the_signature_of_local_naf_shows_those_of_naf_in_their_order():
+    own, others = (list(signature(kind).parameters.items()) for kind in (LocalNAF, NAF))
+    differ = {mine[0]: mine[1].default for mine, other in zip(own, others, strict=False) if mine != other}
+    assert differ.keys() == {"gamma", "replay_buffer_class"} and differ["gamma"] == 0.0
+    assert [name[:5] for name, _ in own[len(others) :]] == ["elite", "elite", "elite", "first"]
 
 
 @pytest.mark.parametrize(
@@ -141,6 +164,9 @@ def test_a_loaded_agent_is_judged_and_knows_no_best_action_yet(tmp_path):
         LocalNAF.load(tmp_path / "naf", elite_draws=0)
     with pytest.raises(ValueError, match=r"^the replay buffer is empty, so there is no best action"):
         LocalNAF.load(tmp_path / "naf", env=model.get_env()).replay_buffer.best_action()
+    NAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL).save(tmp_path / "plain")
+    with pytest.raises(ValueError, match=r"^LocalNAF needs a RankReplayBuffer, .* an agent of NAF has: NAF\.load"):
+        LocalNAF.load(tmp_path / "plain")
     TD3("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL).save(tmp_path / "td3")
     with pytest.raises(ValueError, match=r"^the policy of NAF must be NAFPolicy or a subclass of it, not TD3Policy$"):
         NAF.load(tmp_path / "td3")

@@ -86,6 +86,16 @@ def test_the_diagonal_is_bounded_whatever_the_weights():
     assert {round(value, 3) for value in diagonal.log().unique().tolist()} == {-5.0, 5.0}
 
 
+@pytest.mark.parametrize("side", [-1.0, 1.0])
+def test_beyond_its_bounds_the_diagonal_follows_what_leads_back(side):
+    """Otherwise curvature that is at a bound in all states would stay there for good."""
+    critic = make_critic(1, net_arch=ARCHITECTURES["separate"])
+    bias: Any = critic.lower_net[-1].bias
+    bias.data[:] = 50.0 * side
+    slopes = [th.autograd.grad(sign * critic.lower(draw(1)[0]).sum(), bias)[0].item() for sign in (side, -side)]
+    assert slopes[0] * side > 0 and slopes[1] == 0
+
+
 def test_an_untrained_policy_proposes_the_centre():
     """The layers before it are not: there the gradient would be zero for good."""
     th.manual_seed(0)

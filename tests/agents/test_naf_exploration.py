@@ -60,19 +60,34 @@ def test_schedule():
     np.testing.assert_allclose(actions[400:].std(), 0.05, rtol=0.08)
 
 
+def test_each_dimension_can_have_its_deviation():
+    actions = explore(1000, exploration_std=np.array([0.3, 0.1]))
+    np.testing.assert_allclose(actions.std(axis=0), [[0.3, 0.1]], rtol=0.1)
+
+
+def test_the_text_of_rl_zoo_is_a_schedule_that_ends_at_0():
+    actions = explore(800, exploration_std="lin_0.3")
+    np.testing.assert_allclose([actions[:100].std(), actions[350:450].std()], [0.28, 0.15], rtol=0.15)
+    assert np.abs(actions[-1]).max() < 0.002
+
+
 def test_given_action_noise_takes_precedence():
     noise = NormalActionNoise(np.array([0.5, -0.5]), np.zeros(2))
     actions = explore(10, n_envs=2, action_noise=noise, exploration_std=0.3)
     np.testing.assert_allclose(actions, np.broadcast_to([0.5, -0.5], actions.shape), atol=1e-6)
 
 
-GIVEN = {"action_noise": NormalActionNoise(np.full(2, 0.5), np.full(2, 0.3))}
+def test_given_action_noise_moves_warm_up_actions_too():
+    """As in TD3: where it is 2, every action ends at a bound."""
+    noise = NormalActionNoise(np.array([2.0, -2.0]), np.zeros(2))
+    actions = explore(10, action_noise=noise, learning_starts=5)
+    np.testing.assert_array_equal(actions, np.broadcast_to([1.0, -1.0], actions.shape))
 
 
-@pytest.mark.parametrize(("algorithm", "noise"), [(NAF, {"exploration_std": 0.3}), (LocalNAF, GIVEN)])
-def test_noise_moves_no_warm_up_action(algorithm, noise):
+@pytest.mark.parametrize("algorithm", [NAF, LocalNAF])
+def test_its_own_noise_moves_no_warm_up_action(algorithm):
     """Otherwise many of them would be clipped to the bounds."""
-    actions = explore(1050, algorithm=algorithm, learning_starts=1000, **noise)
+    actions = explore(1050, algorithm=algorithm, learning_starts=1000, exploration_std=0.3)
     warm_up = actions[:1000]
     assert np.abs(warm_up).max() < 1.0
     np.testing.assert_allclose(warm_up.mean(axis=0), 0.0, atol=0.06)

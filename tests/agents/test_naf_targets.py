@@ -119,6 +119,24 @@ def test_an_update_samples_100_transitions_unless_told_otherwise():
     assert [len(batch.rewards) for batch in batches] == [100, 16, 16]
 
 
+def test_no_update_changes_and_logs_nothing():
+    model = make_model(Corridor()).learn(30)
+    weights = model.policy.parameters_to_vector()
+    model.train(0)
+    np.testing.assert_array_equal(model.policy.parameters_to_vector(), weights)
+    assert "train/loss" not in model.logger.name_to_value
+
+
+@pytest.mark.parametrize(("norm", "is_clipped"), [(None, False), (1e-4, True)])
+def test_gradients_are_clipped_unless_the_norm_is_none(norm, is_clipped):
+    plain: Any = dict(optimizer_class=th.optim.SGD, net_arch=[8])
+    model = NAF("MlpPolicy", Corridor(), learning_starts=50, max_grad_norm=norm, policy_kwargs=plain, seed=0).learn(30)
+    before = model.policy.parameters_to_vector()
+    model.train(1)
+    step = np.linalg.norm(model.policy.parameters_to_vector() - before)
+    assert (step < 1e-6) == is_clipped
+
+
 def test_schedules_and_logs():
     model = make_model(Corridor(), learning_rate=lambda progress: 0.01 * (1 + progress), learning_starts=0)
     # Longer than the training, so that nothing is dumped
@@ -174,7 +192,7 @@ def test_fast_updates_are_the_plain_ones(monkeypatch):
         gradients = [parameter.grad for parameter in q_net.parameters() if parameter.grad is not None]
         norm = math.sqrt(sum(gradient.square().sum().item() for gradient in gradients))
         for gradient in gradients:
-            gradient *= min(1.0, model.max_grad_norm / (norm + 1e-6))
+            gradient *= min(1.0, settings["max_grad_norm"] / (norm + 1e-6))
         optimizer.step()
         for old, new in zip(target.parameters(), q_net.parameters(), strict=True):
             old.data = (1 - model.tau) * old.data + model.tau * new.data

@@ -96,27 +96,46 @@ def test_a_warning_names_the_remedy_once():
 def test_value_over_bound_is_that_of_the_largest_reward_so_far():
     model = trained(1100)
     rewards = model.replay_buffer.rewards[:1100]
-    assert model.value_bound == pytest.approx(np.abs(rewards).max() / (1 - GAMMA), rel=1e-5)
-    assert model.value_ceiling == pytest.approx(rewards.max() / (1 - GAMMA), rel=1e-5)
+    assert model.watch.value_bound == pytest.approx(np.abs(rewards).max() / (1 - GAMMA), rel=1e-5)
+    assert model.watch.value_ceiling == pytest.approx(rewards.max() / (1 - GAMMA), rel=1e-5)
     model.replay_buffer.rewards[:] = 0.0
     model.q_net.value_net[-1].bias.data.fill_(50.0)  # Beside it, which of the transitions a batch has does not count
     model.train(1, 1100)
     with th.no_grad():
         values = model.q_net.value(th.as_tensor(model.replay_buffer.observations[:1100, 0]))
     logged = model.logger.name_to_value["train/value_over_bound"]
-    logged_value = model.value_ceiling + (logged - 1) * model.value_bound
+    logged_value = model.watch.value_ceiling + (logged - 1) * model.watch.value_bound
     assert logged_value == pytest.approx(values.max().item(), rel=0.02)
+
+
+def test_the_bound_is_that_of_the_environment(tmp_path, monkeypatch):
+    """A V that was right for larger rewards is said to be too large for smaller ones."""
+    monkeypatch.setattr("sarah.agents.naf_warnings.FRESH_UPDATES", 1)
+    model = trained(1020, policy_kwargs=dict(net_arch=[8]))
+    model.q_net.value_net[-1].bias.data.fill_(200.0)
+    model.save(tmp_path / "agent")
+    seen, env = model.watch, model.env
+    assert env is not None and seen.value_bound > 50
+    model.set_env(env)
+    assert model.watch is seen
+    weak = gym.wrappers.TransformReward(Drift(), lambda reward: 0.1 * float(reward))
+    model.set_env(weak)
+    for agent in (model, Recorder.load(tmp_path / "agent", env=weak)):
+        assert agent.watch.value_bound == 0.0
+        agent.replay_buffer.reset()
+        with pytest.warns(UserWarning, match="wider exploration_std"):
+            agent.learn(1005)
 
 
 def test_where_all_rewards_are_negative_no_value_is_above_zero():
     model = trained(1020)
     model.replay_buffer.rewards[:] = -1.0
-    model.value_bound = model.value_ceiling = 0.0
+    model.watch.value_bound = model.watch.value_ceiling = 0.0
     model.q_net.value_net[-1].bias.data.fill_(50.0)
     with th.no_grad():
         highest = model.q_net.value(th.as_tensor(model.replay_buffer.observations[:1020, 0])).max().item()
     model.train(1, 1020)
-    assert model.value_ceiling == 0.0
+    assert model.watch.value_ceiling == 0.0
     assert model.logger.name_to_value["train/value_over_bound"] == pytest.approx(1 + highest / 100, rel=0.05)
 
 
@@ -141,6 +160,21 @@ def test_w_is_the_mean_of_what_actions_near_mu_led_to():
     loss = nearby_loss(Values(targets, targets, w, targets, th.zeros(2, 1)), targets)  # all actions are mu itself
     (slope,) = th.autograd.grad(loss, w)
     assert loss.item() == pytest.approx(2.0) and slope.flatten().tolist() == pytest.approx([2.0, 0.0])
+
+
+def test_with_many_actions_the_weights_are_nearly_flat():
+    """Distances from mu are nearly equal then. The share is that of equal weights which would make as sure a mean."""
+
+    def effective_share(action_dim: int) -> float:
+        th.manual_seed(0)
+        distances = th.randn(4000, action_dim).square().sum(dim=1, keepdim=True)
+        w = th.ones(4000, 1, requires_grad=True)
+        targets = th.zeros(4000, 1)
+        nearby_loss(Values(targets, targets, w, targets, distances), targets).backward()
+        assert w.grad is not None
+        return float(w.grad.sum() ** 2 / w.grad.square().sum() / 4000)
+
+    assert [effective_share(dim) for dim in (1, 17)] == pytest.approx([0.82, 0.94], abs=0.01)
 
 
 @pytest.mark.parametrize(("transitions", "weight"), [(1, 0.1), (300, 0.1), (600, 0.05), (30_000, 0.001)])

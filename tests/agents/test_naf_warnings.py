@@ -9,7 +9,7 @@ import pytest
 import torch as th
 
 from sarah.agents import NAF
-from sarah.agents.naf_warnings import FirstUpdates, reward_warning, value_warning
+from sarah.agents.naf_warnings import Watch, reward_warning, value_warning
 
 
 @pytest.mark.parametrize(
@@ -27,6 +27,24 @@ from sarah.agents.naf_warnings import FirstUpdates, reward_warning, value_warnin
 def test_rewards_are_far_by_their_deviation_large_by_its_size(mean, std, said):
     text = reward_warning(mean + std * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0], np.float32))
     assert text is None if said is None else re.search(said, text or "")
+
+
+@pytest.mark.parametrize(
+    ("count", "warm_up", "is_full", "are_judged"),
+    [
+        (19, 20, False, False),
+        (20, 20, False, True),
+        (99, 0, False, False),  # without a warm-up
+        (100, 0, False, True),
+        (4, 2, False, False),
+        (5, 2, False, True),
+        (6, 20, True, True),  # there will never be more
+    ],
+)
+def test_rewards_are_judged_once_when_they_are_enough(count, warm_up, is_full, are_judged):
+    watch, rewards = Watch(), np.full(count, -100.0)
+    said = [watch.judge_rewards(rewards, warm_up, is_full) is not None for _ in range(2)]
+    assert said == [are_judged, False] and watch.judged_rewards == are_judged
 
 
 @pytest.mark.filterwarnings("error")
@@ -83,12 +101,12 @@ SMALL_WEIGHTS = (100, 100)
 )
 def test_threads_are_blamed_only_where_they_wait(monkeypatch, threads, seconds, shape, is_said):
     monkeypatch.setattr(th, "get_num_threads", lambda: threads)
-    text = FirstUpdates().thread_warning(seconds, 10, [th.zeros(shape)], batch_size=256)
+    text = Watch().judge_time(seconds, 10, [th.zeros(shape)], batch_size=256)
     assert (text is not None) == is_said
 
 
 def test_very_slow_updates_are_said_after_the_first_ones(monkeypatch):
     monkeypatch.setattr(th, "get_num_threads", lambda: 2)
-    first_updates, weights = FirstUpdates(), [th.zeros(SMALL_WEIGHTS)]
-    said = [first_updates.thread_warning(0.3, 1, weights, batch_size=256) is not None for _ in range(5)]
+    watch, weights = Watch(), [th.zeros(SMALL_WEIGHTS)]
+    said = [watch.judge_time(0.3, 1, weights, batch_size=256) is not None for _ in range(5)]
     assert said == [False, True, False, False, False]

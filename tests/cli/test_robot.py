@@ -1,11 +1,12 @@
 """``sarah-robot``, as a user runs it: the simulated robot, a robot of one's own, and what stops them."""
 
 import os
+import re
 from pathlib import Path
 
 import pytest
 from laboratory import need
-from terminal import Answer, done
+from terminal import Answer, done, run
 
 
 @pytest.fixture(autouse=True)
@@ -15,42 +16,92 @@ def quick() -> None:
 
 def test_a_fault_stops_the_robot_which_says_why(tmp_path: Path) -> None:
     words = ("--engine", "mujoco", "--seconds", "5", "--fault", "rate about y: stuck", "--fault-after", "2")
-    process = done("sarah-robot", "balance", *words, cwd=tmp_path)
+    process = done("sarah-robot", "balance", *words, "--log", "run.mcap", cwd=tmp_path)
     said = [line.split(" s  ")[1] for line in process.stdout.splitlines()[:3]]
+    assert "simulated by mujoco, seed 0, from 3 s on: rate about y: stuck\n" in process.stderr
     assert said[0] == "stepping: stood for a second" and said[2] == "standing: stopped"
     assert said[1].startswith("stopping: frozen: angular rate y repeats for 0.1")
     assert "500 ticks in 5.00 s" in process.stdout and "ended" not in process.stdout
-    assert " 4.00 s  standing; 1 steps per second" in process.stderr
+    told = done("sarah-log", "run.mcap", cwd=tmp_path).stdout
+    assert "500; 0 messages dropped" in told and f"{process.stdout.split(' s  ')[2].splitlines()[0]}" in told
+    assert re.search(r" 4\.00 s  standing; tilt \d°; 1 steps per second; 0 late ticks\n", process.stderr)
 
 
 def test_it_may_go_where_it_wants_and_its_episode_may_not(tmp_path: Path) -> None:
     words = ("--engine", "mujoco", "--seconds", "4", "--fault", "rate about x: 0.1 rad/s too high", "--no-supervisor")
     assert "400 ticks in 4.00 s" in done("sarah-robot", "balance", *words, cwd=tmp_path).stdout
     box = ("--episode.box-half-width", "0.03")
-    assert "ended: left_box" in done("sarah-robot", "balance", *words, *box, cwd=tmp_path).stdout
+    assert "the robot ended: left its place" in done("sarah-robot", "balance", *words, *box, cwd=tmp_path).stdout
 
 
-def test_ctrl_c_lets_it_stop_and_stand(tmp_path: Path) -> None:
-    file = tmp_path / "my_robot.py"
-    lines = (
-        "import os, signal",
-        "from sarah.drivers.simulated_robot import SimulatedRobot",
-        "from sarah.episode.tasks import BALANCE",
-        "class Robot(SimulatedRobot):",
-        "    def read(self):",
-        "        if self._ticks == 150: os.kill(os.getpid(), signal.SIGINT)",
-        "        return super().read()",
-        "ROBOT = Robot(BALANCE.config_of(BALANCE.episode, engine='mujoco'), 0, BALANCE)",
-    )
-    file.write_text("\n".join(lines))
+OWN = """
+import os, signal, time
+from sarah.drivers.driver import Driver, TimedReading
+from sarah.robot.reading import STANDING
+
+class Own(Driver):
+    limits = [(-0.5, 0.5)] * 6
+    ticks, sent, works, is_broken = 0, [], STANDING, False
+
+    def read(self):
+        self.ticks += 1
+        noise = 1e-3 * (self.ticks % 7)
+        if self.is_broken and self.ticks == 9:
+            raise OSError("the bus is gone")
+        if self.ticks == 150:
+            os.kill(os.getpid(), signal.SIGINT)
+        signals = self.works._replace(acceleration=(noise, noise, 9.81 + noise), angular_rate=(noise,) * 3)
+        return TimedReading(signals, time.monotonic())
+
+    def send(self, targets):
+        self.sent.append(targets)
+
+    def off(self):
+        print(f"off after {len(self.sent)} targets")
+
+ROBOT, BROKEN, SHORT, FUTURE, FREE = Own(), Own(), Own(), Own(), Own()
+BROKEN.is_broken = True
+SHORT.works = STANDING._replace(joints=(0.0,) * 5)
+FUTURE.now = lambda: time.monotonic() - 3600
+FREE.limits = [(1.0, 2.0)] * 6
+"""
+
+
+@pytest.fixture
+def own(tmp_path: Path) -> Path:
+    """A file with drivers."""
+    path = tmp_path / "my_robot.py"
+    path.write_text(OWN)
+    return path
+
+
+def test_ctrl_c_lets_it_stop_and_stand(own: Path) -> None:
     scheduler = os.sched_getscheduler(0)
-    process = done("sarah-robot", "balance", "--driver", f"{file}:ROBOT", "--real-time", cwd=tmp_path)
-    assert [line.split(" s  ")[1] for line in process.stdout.splitlines()[1:3]] == [
-        "stopping: asked to stand",
-        "standing: stopped",
-    ]
+    process = done("sarah-robot", "balance", "--driver", "my_robot.py:ROBOT", "--real-time", cwd=own.parent)
+    said = process.stdout.splitlines()
+    assert [line.split(" s  ")[1] for line in said[1:3]] == ["stopping: asked to stand", "standing: stopped"]
+    assert said[3].startswith("off after 15") and "0 steps" in said[4] and "later than 2 ms" in said[5]
     assert "SCHED_FIFO" in process.stderr or "not granted" in process.stderr
     assert os.sched_getscheduler(0) == scheduler
+
+
+def test_nothing_is_sent_to_a_robot_that_is_only_read(own: Path) -> None:
+    words = ("--driver", "my_robot.py:ROBOT", "--real-time", "--read-only", "--seconds", "1.2")
+    assert "off" not in done("sarah-robot", "balance", *words, cwd=own.parent).stdout
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("BROKEN", "my_robot.py, line 14: OSError: the bus is gone"),
+        ("SHORT", "joints of a reading must be 6 numbers, not (0.0, 0.0, 0.0, 0.0, 0.0)"),
+        ("FUTURE", "the time at which a reading was taken must be one of the driver's clock, now(), which says"),
+        ("FREE", "limits must be 6 ranges around zero"),
+    ],
+)
+def test_mistakes_of_a_driver_are_one_line(name: str, words: str, own: Path) -> None:
+    process = run("sarah-robot", "balance", "--driver", f"my_robot.py:{name}", "--real-time", cwd=own.parent)
+    assert process.returncode == 2 and process.stderr.splitlines()[-1].startswith(f"sarah-robot: error: {words}")
 
 
 def test_standing_is_all_it_does_if_asked(tmp_path: Path) -> None:

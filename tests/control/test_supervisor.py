@@ -3,6 +3,7 @@
 import math
 import random
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 
 import pytest
 from hand_made import BALANCE, DT, rocking
@@ -10,7 +11,7 @@ from hand_made import BALANCE, DT, rocking
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, Phase, SteppingParameters
 from sarah.control.supervisor import NOTHING, State, Supervisor
-from sarah.control.watches import SupervisorSettings
+from sarah.control.supervisor_settings import SupervisorSettings
 from sarah.robot.reading import SensorReading
 
 STEPPING = SteppingParameters(*PAPER_STEPPING)
@@ -156,6 +157,27 @@ def test_beyond_20_degrees_it_has_fallen_and_the_targets_stay() -> None:
     for _ in range(50):
         supervisor.tick(NOTHING)
     assert supervisor.has_fallen and supervisor.targets == held
+    supervisor.step()
+    largest = 0.0
+    for tick in range(100):
+        before = supervisor.targets
+        supervisor.tick(noisy(STANDING, tick))
+        largest = max(largest, *(abs(now - last) for now, last in zip(supervisor.targets, before, strict=True)))
+    assert not any(supervisor.targets) and largest <= 0.06 + 1e-9  # 6 rad/s
+
+
+def test_it_stands_while_readings_are_missing_and_then_goes_on() -> None:
+    supervisor, steps = supervised(), readings()
+    while supervisor.phase is not Phase.LIFT or max(supervisor.targets[4:]) < 0.03:
+        supervisor.tick(next(steps))
+    lengths = []
+    for tick in range(40):
+        reading = next(steps)
+        supervisor.tick(None if tick < 20 else reading)
+        lengths.append(max(supervisor.targets[4:]))
+    assert lengths[:8] == [0.03] * 8 and lengths[11:20] == [0.0] * 9 and max(lengths[20:]) == 0.03
+    assert max(later - now for now, later in pairwise(lengths)) < 0.0101  # 1 m/s
+    assert supervisor.state is State.STEPPING
 
 
 def test_it_stops_at_the_speeds_of_the_controller_and_stands() -> None:

@@ -12,7 +12,8 @@ from sarah.control.supervisor import State, Supervisor
 from sarah.drivers.driver import Driver, TimedReading
 from sarah.drivers.driver_file import read_driver
 from sarah.drivers.faults import FAULTS
-from sarah.drivers.loop import ControlLoop, Lockstep, LoopTick, RealTime, controller_for
+from sarah.drivers.loop import ControlLoop, Lockstep, LoopTick, controller_for
+from sarah.drivers.real_time import RealTime
 from sarah.drivers.simulated_robot import NO_FAULT, FaultPlan, SimulatedRobot, simulated_loop
 from sarah.episode.episode import simulate
 from sarah.episode.push import NO_PUSH, Push
@@ -34,7 +35,7 @@ def run(config: BalanceConfig, plan: FaultPlan = NO_FAULT) -> tuple[SimulatedRob
     ticks: list[LoopTick] = []
     robot, loop = simulated_loop(EpisodeSpec(V, 3, BALANCE, config), plan, None, [ticks.append], record_trace=True)
     loop.run()
-    robot.off()
+    robot.close()
     return robot, ticks
 
 
@@ -106,6 +107,8 @@ def test_deadlines_do_not_drift_and_those_that_passed_are_left_out() -> None:
 class Robot(Driver):
     """A robot of somebody's, which takes a while to read its first signals."""
 
+    limits = ((-0.5, 0.5),) * 6
+
     def __init__(self) -> None:
         self.sent: list[Targets] = []
         self.ticks = 0
@@ -138,12 +141,14 @@ def test_a_robot_of_ones_own_needs_to_read_and_to_send(is_read_only: bool) -> No
 def test_a_driver_is_found_in_a_file(tmp_path: Any) -> None:
     file = tmp_path / "my_robot.py"
     lines = ("from sarah.drivers.driver import Driver", "class Mine(Driver):", "    def read(self): return None",
-             "    def send(self, targets): pass", "ROBOT = Mine()")  # fmt: skip
+             "    def send(self, targets): pass", "ROBOT, FREE = Mine(), Mine()",
+             "ROBOT.limits = [(-1, 1)] * 6")  # fmt: skip
     file.write_text("\n".join(lines))
     assert isinstance(read_driver(f"{file}:ROBOT"), Driver)
     file.with_name("broken.py").write_text("import nothing_of_that_name")
     for reference, words in (
         (f"{file}:ROBOTT", f"unknown driver in {file} 'ROBOTT', did you mean 'ROBOT'?"),
+        (f"{file}:FREE", f"{file}:FREE needs limits: lowest and highest position of each of left_hip_abduction, "),
         (str(file), "--driver must be a file and a name, such as my_robot.py:ROBOT, not"),
         ("none.py:ROBOT", "there is no file none.py with a driver"),
         (f"{tmp_path}/broken.py:ROBOT", f"{tmp_path}/broken.py, line 1: ModuleNotFoundError"),

@@ -26,7 +26,8 @@ from experiments.experiment import EPISODE
 from experiments.record import ResultError, Row
 from experiments.tables import shown, table
 from sarah.control.pattern_generator import Phase
-from sarah.drivers.loop import LoopTick, RealTime
+from sarah.drivers.loop import LoopTick
+from sarah.drivers.real_time import RealTime
 from sarah.drivers.simulated_robot import simulated_loop
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import NO_PUSH

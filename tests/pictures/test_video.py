@@ -1,5 +1,6 @@
 """Videos of episodes."""
 
+import dataclasses
 import sys
 from pathlib import Path
 
@@ -42,6 +43,15 @@ def test_frames_show_robot_and_words(trace: Trace) -> None:
     assert dark[:, : WIDTH // 4].sum() > 1000  # what is written on the left
     rows, columns = np.nonzero((film(trace, 1.0, caption="seed 17")[0] != first).any(axis=-1))
     assert rows.min() > 0.9 * HEIGHT and columns.max() < WIDTH / 2
+
+
+def test_a_score_that_nobody_knows_is_not_written(trace: Trace) -> None:
+    ((known,), (unknown,)) = (
+        film(one, 1.0) for one in (trace, dataclasses.replace(trace, score=np.full(len(trace), np.nan)))
+    )
+    rows, columns = np.nonzero((known != unknown).any(axis=-1))
+    assert len(rows) > 100 and columns.max() < WIDTH / 4
+    assert not np.less(unknown[rows.min() : rows.max()], 140).all(axis=-1)[:, : WIDTH // 5].any()
 
 
 def test_push_is_marked_while_it_acts_and_a_moment_longer(trace: Trace) -> None:

@@ -5,7 +5,8 @@ import shutil
 from pathlib import Path
 
 import pytest
-from laboratory import COARSE_PHYSICS
+from laboratory import COARSE_PHYSICS, RESULT
+from logged import write
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import simulate
@@ -15,11 +16,14 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import push_of
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.errors import ConfigurationError, RunFolderError
+from sarah.logs.played import LoggedResult, played
 from sarah.reports.transfer import ENGINES
+from sarah.robot.description import describe_robot
 from sarah.runs.run_episodes import choose_episode, episodes_of_run
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import default_engine
 from sarah.simulation.terrain import Terrain, draw_ground
+from sarah.viewer.results import comparison
 from sarah.viewer.scenario import Scenario
 
 PUSHED = BalanceConfig(time_limit=4.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)), physics=COARSE_PHYSICS)
@@ -99,3 +103,15 @@ def test_a_push_is_simulated_as_given_and_lasts_as_its_task_says() -> None:
     assert trace is not None
     assert trace.push[trace.tick_at(2.55)] == pytest.approx([0.0, 50.0, 0.0])
     assert not trace.push[trace.tick_at(2.49)].any()
+
+
+def test_what_nobody_knows_of_a_logged_robot_is_not_shown(tmp_path: Path) -> None:
+    pytest.importorskip("viser")
+    from sarah.viewer.scene import describe_tick
+
+    logged = LoggedResult(**vars(RESULT))
+    table = comparison(logged, RESULT, None)
+    assert "<td>score</td><td><b></b></td><td>0.800</td>" in table
+    assert "<td>steps per second</td><td><b>3.00</b></td><td>3.00</td>" in table
+    trace = played(write(tmp_path / "a.mcap"), describe_robot()).trace
+    assert trace is not None and describe_tick(trace, 50)[1] == "4.0 steps/s"

@@ -1,0 +1,101 @@
+"""What a controller does, tick by tick, in a log: of a simulation, and of a control loop."""
+
+from __future__ import annotations
+
+from sarah.control.pattern_generator import Phase, PhaseChange
+from sarah.control.supervisor import Controller, State, Supervisor
+from sarah.drivers.loop import ControlLoop, LoopTick
+from sarah.logs.robot_log import RobotLog
+from sarah.robot.reading import SensorReading
+
+REASONS = {"standing": "put up", "stepping": "stood for a second", "fallen": "lay down"}
+"""Reasons for the states of a robot that has no supervisor."""
+
+
+class ControllerLog:
+    """Ticks, phase changes and states of a controller, in a log.
+
+    :param log: log
+    """
+
+    def __init__(self, log: RobotLog) -> None:
+        self._log = log
+        self._state = ""
+
+    def tick(
+        self,
+        seconds: float,
+        controller: Controller,
+        change: PhaseChange | None,
+        reading: SensorReading | None,
+        reading_seconds: float,
+        late_seconds: float = 0.0,
+    ) -> None:
+        """Log a tick, and the changes of phase and state in it. Times are since the run began.
+
+        :param seconds: time of the tick, in s
+        :param controller: controller, with its targets
+        :param change: end of a phase in this tick
+        :param reading: reading that it acted on; ``None`` if there was none
+        :param reading_seconds: time at which the reading was taken, in s
+        :param late_seconds: delay behind the tick's deadline, in s
+        """
+        if isinstance(controller, Supervisor):
+            self._follow(controller, seconds)
+        elif controller.has_fallen:
+            self.enter(seconds, "fallen")
+        else:
+            self.enter(seconds, "standing" if controller.phase is Phase.STAND else "stepping")
+        if change is not None:
+            self._log.phase_change(seconds, change, controller.stance)
+        self._log.tick(
+            seconds=seconds,
+            reading=reading,
+            reading_seconds=reading_seconds,
+            targets=controller.targets,
+            state=self._state,
+            phase=controller.phase,
+            stance=controller.stance,
+            tilt=controller.tilt,
+            rate=controller.rate,
+            late_seconds=late_seconds,
+        )
+
+    def enter(self, seconds: float, state: str, reason: str = "") -> None:
+        """Log a new state; the present one is not logged again.
+
+        :param seconds: time since the run began, in s
+        :param state: state
+        :param reason: reason of the change; by default that of a robot without a supervisor
+        """
+        if state != self._state:
+            self._log.state(seconds, state, self._state, reason or REASONS[state])
+            self._state = state
+
+    def _follow(self, supervisor: Supervisor, seconds: float) -> None:
+        """Log what a supervisor did."""
+        if not self._state:
+            self.enter(seconds, State.STANDING.value)
+        if supervisor.state_change is not None:
+            state, before, reason = supervisor.state_change
+            self._log.state(seconds, state.value, before.value, reason)
+        self._state = supervisor.state.value
+
+
+def log_loop(loop: ControlLoop, log: RobotLog, by: str) -> None:
+    """Log a control loop from its next tick on.
+
+    :param loop: control loop
+    :param log: log
+    :param by: name of who gives the robot its parameters
+    """
+    controller_log = ControllerLog(log)
+    values = {**vars(loop.parameters), **vars(loop.balance)}
+
+    def observe(tick: LoopTick) -> None:
+        if loop.ticks == loop.standing_ticks:
+            log.parameters(tick.seconds, values, 0.0, by, True, "")
+        taken = tick.seconds - tick.age
+        controller_log.tick(tick.seconds, tick.controller, tick.change, tick.reading, taken, tick.late_seconds)
+
+    loop.observers = (*loop.observers, observe)
