@@ -32,6 +32,8 @@ UNHEARD = NOTHING._replace(acceleration=(math.nan, math.nan, GRAVITY))
 """What the controller is given then: a stuck vertical acceleration could look like a fall."""
 STANDING_TARGETS: Targets = (0.0,) * 6
 """Targets of a standing robot."""
+PUT_BACK = "the parameters before are back"
+"""Beginning of the reason for which parameters were replaced by the last ones that worked."""
 PROVEN_SECONDS = 5.0
 """Time of stepping after which new parameters count as working, in s."""
 
@@ -221,7 +223,7 @@ class Supervisor:
             self._enter(State.FALLEN, wrong)
         elif wrong.startswith("no step") and proven is not None and proven != self.asked:
             self.set_parameters(*proven)
-            self._enter(State.STEPPING, f"the parameters before are back: {wrong}")
+            self._enter(State.STEPPING, f"{PUT_BACK}: {wrong}")
         else:
             self._enter(State.STOPPING, wrong)
 

@@ -56,8 +56,9 @@ def test_a_robot_that_runs_takes_a_push(tmp_path: Path) -> None:
     pusher = threading.Thread(target=push)
     pusher.start()
     words = ("--engine", "mujoco", "--real-time", "--seconds", "2.5", "--listen", endpoint.address)
-    process = done("sarah-robot", "balance", *words, "--largest-change", "0.1", cwd=tmp_path)
+    process = done("sarah-robot", "balance", *words, "--largest-change", "0.1", "--log", "run.mcap", cwd=tmp_path)
     pusher.join()
+    assert "2 sets asked for, 2 applied" in done("sarah-log", "run.mcap", cwd=tmp_path).stdout
     assert answers == ["refused", "applied", "ended"] and f"listening at {endpoint.address}" in process.stderr
 
 
