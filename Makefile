@@ -12,7 +12,7 @@ RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
 NAME ?=
 TIMINGS := throughput episodes updates decisions viewer
 PAGE := tests/viewer/test_page.py
-ENDURANCE := kills killed_workers killed_logs resume long_run protections
+ENDURANCE := kills killed_workers killed_logs resume long_run protections pushes
 
 .PHONY: help install train figures stepping-report balance-report test test-page test-slow lint format docs results bench endurance mutants clean
 

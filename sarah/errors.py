@@ -51,6 +51,10 @@ class WorkersError(SarahError, RuntimeError):
     """Workers cannot be reached, or they die again and again."""
 
 
+class RobotError(SarahError, ConnectionError):
+    """A robot cannot be reached or listened for, or it does not answer."""
+
+
 class LearningError(SarahError, RuntimeError):
     """A learning algorithm does not return finite numbers."""
 

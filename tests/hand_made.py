@@ -46,6 +46,14 @@ def rocking(tick: int, dt: float = DT) -> SensorReading:
     )
 
 
+def heard(tick: int, still: bool = False) -> SensorReading:
+    """A reading of a robot that stands for a second and then rocks, or stands still; no two are the same."""
+    seen = reading() if still or tick < 100 else rocking(tick - 100)
+    noise = 0.001 * (tick % 7)
+    acceleration = (seen.acceleration[0] + noise, noise, seen.acceleration[2] + noise)
+    return seen._replace(acceleration=acceleration, angular_rate=(noise, seen.angular_rate[1] + noise, noise))
+
+
 # Over the right leg the body leans right: lateral acceleration negative, rate about y positive.
 OVER_RIGHT = reading(lateral=-3.0, rate=0.3, left=UNLOADED, right=2 * LOADED)
 ROCKING_BACK = reading(rate=-0.6, left=UNLOADED, right=2 * LOADED)

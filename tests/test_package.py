@@ -88,6 +88,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
 def test_wheel_holds_the_robot_and_the_agent_and_claims_one_name(built: tuple[Path, Path]) -> None:
     names = zipfile.ZipFile(built[1]).namelist()
     data = {"sarah/urdf/sarah.urdf.xacro", "sarah/py.typed", "sarah/episode/parameter_sets.json"}
+    data |= {"sarah/remote/request.schema.json"}
     assert data | {"sarah/urdf/__init__.py", "sarah/agents/local_naf.py"} <= set(names)
     assert sorted(names) == sorted(set(names))
     modules = {str(path.relative_to(ROOT)) for path in (ROOT / "sarah").rglob("*.py")}

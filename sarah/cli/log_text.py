@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterator
 
-from sarah.logs.summary import LATE_SECONDS, Summary
+from sarah.drivers.real_time import LATE_SECONDS
+from sarah.logs.summary import Summary
 
 MOST_STATES = 10
 """Largest number of changes of the state that are printed."""

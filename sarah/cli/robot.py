@@ -6,13 +6,14 @@ import contextlib
 import dataclasses
 import math
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
 import tyro
 
+from sarah.cli.endpoints import endpoint_of, with_endpoint
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
 from sarah.cli.interruption import first_signal_noted
 from sarah.cli.options import as_command, named_task, say_engine
@@ -23,8 +24,8 @@ from sarah.control.supervisor import State, Supervisor
 from sarah.drivers.driver import Driver
 from sarah.drivers.driver_file import mistakes_of, read_driver
 from sarah.drivers.faults import FAULTS
-from sarah.drivers.loop import ControlLoop, Lockstep, LoopTick, controller_for
-from sarah.drivers.real_time import RealTime, undisturbed
+from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, LoopTick, controller_for
+from sarah.drivers.real_time import LATE_SECONDS, RealTime, undisturbed
 from sarah.drivers.simulated_robot import FaultPlan, SimulatedRobot, simulated_loop
 from sarah.episode.ending import ending_words
 from sarah.episode.push import NO_PUSH, PushedConfig
@@ -33,13 +34,13 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.ranges import Within
+from sarah.remote.requests import LARGEST_CHANGE, LearnedWith
+from sarah.remote.server import Server
 
 if TYPE_CHECKING:
     from sarah.logs.robot_log import RobotLog
 
 COMMAND = "sarah-robot"
-LATE_SECONDS = 0.002
-"""Time after its deadline from which a tick counts as late, in s."""
 ANYWHERE = 100.0
 """Displacement at which the simulated robot ends, in m: it may go where it wants."""
 
@@ -61,6 +62,12 @@ class RobotOptions(EpisodeOptions):
     :param stand: whether the robot only stands
     :param log: file to log to, such as run.mcap; sarah-log reads it
     :param read_only: whether to read and compute without sending anything to the robot
+    :param listen: address at which ``sarah-push`` reaches the robot; without an address tcp/127.0.0.1:7447, which is
+        open to every user of this machine. Other machines need an address tls/… and certificates
+    :param largest_change: largest change of a parameter by a push, as a share of its range
+    :param authority: for TLS: certificate of the authority that has signed those of robot and pushers, a PEM file
+    :param certificate: for TLS: certificate of the robot, a PEM file
+    :param key: for TLS: private key of that certificate, a PEM file
     :param seed: seed of the simulated robot, its sensors and its push
     :param fault: what fails on the simulated robot, by its name in the table of docs/how_to/real_robot.md, such as
         ``rate about y: 0``
@@ -74,6 +81,11 @@ class RobotOptions(EpisodeOptions):
     stand: bool = False
     log: Annotated[Path | None, tyro.conf.arg(metavar="FILE.mcap")] = None
     read_only: bool = False
+    listen: Annotated[str | None, tyro.conf.arg(metavar="[ENDPOINT]")] = None
+    largest_change: Annotated[float, Within(0.0, 1.0)] = LARGEST_CHANGE
+    authority: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    certificate: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    key: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     seed: int = 0
     fault: Annotated[str, tyro.conf.arg(metavar="NAME")] = "none"
     fault_after: Annotated[float, Within(0.0, 3600.0, "s")] = 3.0
@@ -93,11 +105,14 @@ class RobotOptions(EpisodeOptions):
 @as_command(COMMAND)
 def main() -> None:
     """Run the command with the arguments of the process."""
-    options = parse_episode_options(COMMAND, sys.argv[1:], RobotOptions(), adapted=_supervised)
+    arguments = with_endpoint(sys.argv[1:])
+    options = parse_episode_options(COMMAND, arguments, RobotOptions(), adapted=_supervised)
     own, _ = learned_of(options.subject, named_task(options.task))
     spec = options.applied_to(own)
     if options.stand and not spec.config.supervisor.enabled:
         raise ConfigurationError("--stand needs a supervisor: leave --no-supervisor out")
+    if options.listen is not None and not spec.config.supervisor.enabled:
+        raise ConfigurationError("--listen needs a supervisor: leave --no-supervisor out")
     if options.seconds is not None and options.driver is None:  # it ends by itself
         spec = dataclasses.replace(spec, config=dataclasses.replace(spec.config, time_limit=options.seconds))
     with first_signal_noted(f"{COMMAND}: the robot stops and stands; a second signal ends at once") as is_interrupted:
@@ -113,16 +128,17 @@ def _supervised(config: EpisodeConfig, subject: str | None) -> EpisodeConfig:
 
 def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], bool]) -> None:
     progress = Progress(spec.config.physics.control_dt)
-    loop = _loop(options, spec, progress)
-    values = {**vars(loop.parameters), **vars(loop.balance)}
-    print(", ".join(f"{name} {value:.3g}" for name, value in values.items()), file=sys.stderr)
     with contextlib.ExitStack() as stack:
+        server = None if options.listen is None else stack.enter_context(contextlib.closing(_server(options, spec)))
+        loop = _loop(options, spec, [progress] if server is None else [progress, server])
+        values = {**vars(loop.parameters), **vars(loop.balance)}
+        print(", ".join(f"{name} {value:.3g}" for name, value in values.items()), file=sys.stderr)
         stack.callback(loop.driver.close)
         if not options.read_only:
             stack.callback(loop.driver.off)
         log = None if options.log is None else stack.enter_context(_logged(options, spec, loop))
         if options.real_time:
-            print(stack.enter_context(undisturbed()), file=sys.stderr)
+            print(stack.enter_context(undisturbed(() if server is None else (server.thread,))), file=sys.stderr)
         if options.driver is not None:
             stack.enter_context(mistakes_of(options.driver))
         while loop.tick():
@@ -149,7 +165,17 @@ def _logged(options: RobotOptions, spec: EpisodeSpec, loop: ControlLoop) -> Robo
     return log
 
 
-def _loop(options: RobotOptions, spec: EpisodeSpec, progress: Progress) -> ControlLoop:
+def _server(options: RobotOptions, spec: EpisodeSpec) -> Server:
+    """What lets others reach the robot."""
+    assert options.listen is not None
+    endpoint = endpoint_of(options.listen, options.authority, options.certificate, options.key)
+    robot, dt = LearnedWith.of(spec.config), spec.config.physics.control_dt
+    server = Server(endpoint, robot, dt, options.largest_change)
+    print(f"listening at {endpoint.address}", file=sys.stderr)
+    return server
+
+
+def _loop(options: RobotOptions, spec: EpisodeSpec, observers: Sequence[LoopObserver]) -> ControlLoop:
     """The control loop of the robot that the options name."""
     config, dt = spec.config, spec.config.physics.control_dt
     pacing = RealTime(dt) if options.real_time else None
@@ -158,12 +184,12 @@ def _loop(options: RobotOptions, spec: EpisodeSpec, progress: Progress) -> Contr
         failing = "" if options.fault == "none" else f", from {1.0 + options.fault_after:g} s on: {options.fault}"
         print(f"simulated by {config.engine}, seed {options.seed}{failing}", file=sys.stderr)
         plan = FaultPlan(FAULTS[options.fault], options.fault_after)
-        _, loop = simulated_loop(dataclasses.replace(spec, seed=options.seed), plan, pacing, [progress])
+        _, loop = simulated_loop(dataclasses.replace(spec, seed=options.seed), plan, pacing, observers)
     else:
         driver = read_driver(options.driver)
         stepping, balance = controller_of(spec.task, spec.parameters, config)
         controller = controller_for(config, driver.limits)
-        loop = ControlLoop(driver, controller, stepping, balance or LOCKED_HIPS, dt, pacing or Lockstep(), [progress])
+        loop = ControlLoop(driver, controller, stepping, balance or LOCKED_HIPS, dt, pacing or Lockstep(), observers)
     loop.is_read_only = options.read_only
     if options.stand:
         _still_moves(loop)

@@ -30,6 +30,8 @@ UNHEARD = NOTHING._replace(acceleration=(math.nan, math.nan, GRAVITY))
 """What the controller is given without a new reading: a stuck vertical acceleration could look like a fall."""
 STANDING_TARGETS: Targets = (0.0,) * 6
 """Targets of a standing robot."""
+PUT_BACK = "the parameters before are back"
+"""Beginning of the reason for which parameters were replaced by the last ones that worked."""
 PROVEN_SECONDS = 5.0
 """Time of stepping after which new parameters count as working, in s."""
 
@@ -76,6 +78,8 @@ class Supervisor:
     """Joint targets in the order of ``ACTUATED_JOINTS``, in rad and m."""
     generator: PatternGenerator
     """Pattern generator, which is a new one each time that the robot begins to step."""
+    asked: tuple[SteppingParameters, BalanceParameters]
+    """Parameters that were set last; or the ones before, if the robot did not step with them."""
 
     def __init__(
         self,
@@ -87,7 +91,7 @@ class Supervisor:
         settings: SupervisorSettings = STANDARD_SUPERVISOR,
     ) -> None:
         self._dt, self._limits, self._settings = dt, limits, settings
-        self._asked, self.constants = (parameters, balance), constants
+        self.asked, self.constants = (parameters, balance), constants
         self._proven: tuple[SteppingParameters, BalanceParameters] | None = None
         self.state_change = None
         self.targets = STANDING_TARGETS
@@ -97,7 +101,7 @@ class Supervisor:
 
     def _begin(self) -> None:
         """Stand, with a new generator that steps after its second of standing."""
-        self.generator = PatternGenerator(*self._asked, self._dt, self._limits, self.constants)
+        self.generator = PatternGenerator(*self.asked, self._dt, self._limits, self.constants)
         self.state = State.STANDING
         self._watches = Watches(self._settings, self._dt, self.constants)
         self._is_to_step, self._stop_reason = True, ""
@@ -116,9 +120,9 @@ class Supervisor:
         :raises ConfigurationError: if a value is not finite or of another type; all values stay as they were
         """
         self.generator.set_parameters(parameters, balance)
-        asked = parameters or self._asked[0], balance or self._asked[1]
-        if asked != self._asked:
-            self._asked, self._stepped_seconds = asked, 0.0
+        asked = parameters or self.asked[0], balance or self.asked[1]
+        if asked != self.asked:
+            self.asked, self._stepped_seconds = asked, 0.0
             self._watches.forgive()
 
     def stand(self, reason: str = "asked to stand") -> None:
@@ -238,9 +242,9 @@ class Supervisor:
             self._begin()
         elif wrong.startswith("tilt"):
             self._enter(State.FALLEN, wrong)
-        elif wrong.startswith("no step") and proven is not None and proven != self._asked:
+        elif wrong.startswith("no step") and proven is not None and proven != self.asked:
             self.set_parameters(*proven)
-            self._enter(State.STEPPING, f"the parameters before are back: {wrong}")
+            self._enter(State.STEPPING, f"{PUT_BACK}: {wrong}")
         else:
             self._enter(State.STOPPING, wrong)
 
@@ -249,13 +253,23 @@ class Supervisor:
         if self.state is State.STEPPING:
             self._stepped_seconds += seconds
             if self._stepped_seconds > PROVEN_SECONDS:
-                self._proven = self._asked
+                self._proven = self.asked
 
     def _enter(self, state: State, reason: str) -> None:
         self.state_change = StateChange(state, self.state, reason)
         self.state = state
         if state in (State.STOPPING, State.FALLEN):
             self._is_to_step = False
+
+    @property
+    def is_proven(self) -> bool:
+        """Whether the robot has stepped with its present parameters for long enough, now or before."""
+        return self._proven == self.asked
+
+    @property
+    def is_waiting(self) -> bool:
+        """Whether it stands or has fallen, and steps only when it is asked to."""
+        return self.state in (State.STANDING, State.FALLEN) and not self._steps_when_asked
 
     @property
     def is_moving(self) -> bool:

@@ -6,8 +6,9 @@ import contextlib
 import gc
 import os
 import sys
+import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 
 SPIN_SECONDS = 0.0005
 """Time before a deadline from which the loop waits without sleeping, in s: as inexact as sleeping is."""
@@ -15,6 +16,8 @@ PRIORITY = 50
 """Priority in the real-time scheduling class."""
 SWITCH_SECONDS = 0.0005
 """Time for which another thread may hold the interpreter, in s."""
+LATE_SECONDS = 0.002
+"""Time after its deadline from which a tick counts as late, in s."""
 
 
 class RealTime:
@@ -49,13 +52,15 @@ class RealTime:
 
 
 @contextlib.contextmanager
-def undisturbed() -> Iterator[str]:
+def undisturbed(helpers: Sequence[threading.Thread] = ()) -> Iterator[str]:
     """Context in which this process is disturbed as little as the system grants.
 
+    :param helpers: threads for which the loop may have to wait, because they hold the interpreter for moments; they
+        come right behind this thread
     :return: how it is scheduled, in words
     """
     switch = sys.getswitchinterval()
-    with _scheduled() as words:
+    with _scheduled([thread.native_id or 0 for thread in helpers]) as words:
         sys.setswitchinterval(SWITCH_SECONDS)
         gc.freeze()
         gc.disable()
@@ -68,15 +73,18 @@ def undisturbed() -> Iterator[str]:
 
 
 @contextlib.contextmanager
-def _scheduled() -> Iterator[str]:
+def _scheduled(helpers: Sequence[int]) -> Iterator[str]:
     """Context in the real-time scheduling class, where the system has one and grants it."""
+    priorities = {**dict.fromkeys(helpers, PRIORITY - 1), 0: PRIORITY}
     try:
-        before = os.sched_getscheduler(0), os.sched_getparam(0)
-        os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(PRIORITY))
+        before = {thread: (os.sched_getscheduler(thread), os.sched_getparam(thread)) for thread in priorities}
+        for thread, priority in priorities.items():
+            os.sched_setscheduler(thread, os.SCHED_FIFO, os.sched_param(priority))
     except (OSError, AttributeError) as error:
         yield f"real-time scheduling is not granted ({error}): other processes can make ticks late"
         return
     try:
         yield f"real-time scheduling: SCHED_FIFO, priority {PRIORITY}"
     finally:
-        os.sched_setscheduler(0, *before)
+        for thread, (policy, parameter) in before.items():
+            os.sched_setscheduler(thread, policy, parameter)

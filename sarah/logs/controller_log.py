@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from sarah.control.pattern_generator import Phase, PhaseChange
-from sarah.control.supervisor import Controller, State, Supervisor
+from sarah.control.supervisor import PUT_BACK, Controller, State, Supervisor
 from sarah.drivers.loop import ControlLoop, LoopTick
 from sarah.logs.robot_log import RobotLog
 from sarah.robot.reading import SensorReading
@@ -82,19 +82,42 @@ class ControllerLog:
         self._state = supervisor.state.value
 
 
+class _Parameters:
+    """Parameters of a loop's robot: its own, when it has stood, and those that take their place."""
+
+    def __init__(self, loop: ControlLoop, log: RobotLog, by: str) -> None:
+        self._loop, self._log, self._by = loop, log, by
+        self._present = loop.parameters, loop.balance
+
+    def look(self, tick: LoopTick) -> None:
+        """Log parameters that the robot was given in a tick."""
+        loop, supervisor = self._loop, tick.controller
+        if loop.ticks == loop.standing_ticks:
+            self._applied(tick.seconds, 0.0, self._by, "")
+        if loop.ticks < loop.standing_ticks or not isinstance(supervisor, Supervisor):
+            return
+        if supervisor.asked != self._present:
+            self._present = supervisor.asked
+            reason = supervisor.state_change.reason if supervisor.state_change else ""
+            by, why = ("supervisor", reason) if reason.startswith(PUT_BACK) else ("push", "")
+            self._applied(tick.seconds, tick.seconds, by, why)
+
+    def _applied(self, seconds: float, asked_seconds: float, by: str, reason: str) -> None:
+        stepping, balance = self._present
+        self._log.parameters(seconds, {**vars(stepping), **vars(balance)}, asked_seconds, by, True, reason)
+
+
 def log_loop(loop: ControlLoop, log: RobotLog, by: str) -> None:
     """Log a control loop from its next tick on.
 
     :param loop: control loop
     :param log: log
-    :param by: name of who gives the robot its parameters
+    :param by: name of who gives the robot its own parameters
     """
-    controller_log = ControllerLog(log)
-    values = {**vars(loop.parameters), **vars(loop.balance)}
+    controller_log, parameters = ControllerLog(log), _Parameters(loop, log, by)
 
     def observe(tick: LoopTick) -> None:
-        if loop.ticks == loop.standing_ticks:
-            log.parameters(tick.seconds, values, 0.0, by, True, "")
+        parameters.look(tick)
         taken = tick.seconds - tick.age
         controller_log.tick(tick.seconds, tick.controller, tick.change, tick.reading, taken, tick.late_seconds)
 

@@ -8,12 +8,11 @@ from dataclasses import dataclass, field
 from itertools import pairwise
 from statistics import fmean
 
+from sarah.drivers.real_time import LATE_SECONDS
 from sarah.logs.reading import Log, Message
 from sarah.logs.topic import Values
 from sarah.logs.topics import PARAMETER_CHANGES, PHASE_CHANGES, STATES, TICKS, TOPICS, WINDOWS
 
-LATE_SECONDS = 0.002
-"""Delay beyond which a tick counts as late, in s."""
 _LATE = re.compile(rb'"late_seconds":\s*(-?\d+(?:\.\d+)?(?:[eE][-+]?\d+)?)')
 """The one value of a tick that a summary needs: decoding all of them would take five times as long."""
 

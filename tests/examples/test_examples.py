@@ -11,6 +11,8 @@ EXAMPLES = Path(__file__).parents[2] / "examples"
 LONGEST = 40
 ENGINES = {"two_engines": ("pybullet", "mujoco")}
 ARGUMENTS = {"naf_on_pendulum": ("100",)}
+WITHOUT_ROS = ("relay_to_ros",)
+"""Examples that test_relay.py runs."""
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)
@@ -22,6 +24,8 @@ def test_an_example_is_short_and_listed_and_one_sees_something(
     text = path.read_text()
     assert len(text.splitlines()) <= LONGEST and f"({path.name})" in (EXAMPLES / "README.md").read_text()
     assert "\nOne sees " in (ast.get_docstring(ast.parse(text)) or "")
+    if path.stem in WITHOUT_ROS:
+        return
     monkeypatch.setattr("sys.argv", [str(path), *ARGUMENTS.get(path.stem, ())])
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     runpy.run_path(str(path), run_name="__main__")

@@ -1,0 +1,108 @@
+"""What a robot answers, and its telemetry, as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, fields
+from enum import Enum
+from typing import Any, TypeVar
+
+from sarah.errors import RobotError
+from sarah.remote.requests import SCHEMA
+
+
+class Outcome(str, Enum):
+    """What became of a request."""
+
+    APPLIED = "applied"
+    """The robot does it from this tick on."""
+    KEPT = "kept"
+    """The robot has stepped with the new parameters for long enough."""
+    REPLACED = "replaced"
+    """The robot did not step with them, and has those before again."""
+    STOPPED = "stopped"
+    """The robot stopped before they were proven."""
+    OVERTAKEN = "overtaken"
+    """Newer parameters came."""
+    REFUSED = "refused"
+    """The robot does not do it."""
+    ENDED = "ended"
+    """The robot's program ended."""
+
+
+@dataclass(frozen=True)
+class Answer:
+    """An answer to a request. A push gets one or two: when it is applied, and what became of it.
+
+    :param outcome: what became of the request
+    :param reason: reason for it, on one line
+    :param is_final: whether no other answer follows
+    :param tick: number of the control tick, from 0; ``None`` if the request did not get as far
+    :param seconds: time of that tick since the robot began, in s
+    :param state: state of the robot then
+    :param phase: phase of the step that begins then
+    """
+
+    outcome: Outcome
+    reason: str = ""
+    is_final: bool = True
+    tick: int | None = None
+    seconds: float | None = None
+    state: str = ""
+    phase: str = ""
+
+
+@dataclass(frozen=True)
+class Telemetry:
+    """What a robot does.
+
+    :param tick: number of the control tick, from 0
+    :param seconds: time since the robot began, in s
+    :param state: state of its supervisor
+    :param reason: reason for that state
+    :param phase: phase of the step
+    :param steps_per_second: steps per second in the last two seconds
+    :param tilt: lateral acceleration towards the stance leg, in m/s^2
+    :param parameters: values of P1 to P5 and V1 to V4 that it was given; in its first second those of the paper
+    :param late_ticks: number of late ticks so far
+    """
+
+    tick: int
+    seconds: float
+    state: str
+    reason: str
+    phase: str
+    steps_per_second: float
+    tilt: float
+    parameters: Mapping[str, float]
+    late_ticks: int
+
+
+Message = TypeVar("Message", Answer, Telemetry)
+
+
+def to_json(message: Answer | Telemetry) -> bytes:
+    """A message as JSON.
+
+    :param message: answer or telemetry
+    """
+    return json.dumps({"schema": SCHEMA, **asdict(message)}).encode()
+
+
+def from_json(kind: type[Message], text: bytes) -> Message:
+    """Read a message of a robot.
+
+    :param kind: its kind
+    :param text: what the robot sent
+    :raises RobotError: if it is of another kind
+    """
+    try:
+        content: dict[str, Any] = json.loads(text)
+        if content.pop("schema") != SCHEMA or content.keys() != {item.name for item in fields(kind)}:
+            raise ValueError
+        if kind is Answer:
+            content["outcome"] = Outcome(content["outcome"])
+        return kind(**content)
+    except (ValueError, TypeError, AttributeError, KeyError):
+        raise RobotError(f"the robot's answer is not one of schema {SCHEMA}: {text[:100]!r}") from None

@@ -1,0 +1,93 @@
+"""The other side: ask a robot for something, and hear what becomes of it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterator
+from typing import Any
+
+from sarah.errors import RobotError
+from sarah.remote.answers import Answer, Telemetry, from_json
+from sarah.remote.endpoints import REQUESTS, Endpoint
+from sarah.remote.requests import Request
+
+WAIT_SECONDS = 30.0
+"""Time to wait for all answers, in s: a swap of legs may take some, and new parameters are proven after five more."""
+ATTEMPTS, PAUSE_SECONDS = 20, 0.05
+"""Number of times that a request is sent which the robot drops unread, as in a flood, and time between them, in s."""
+
+
+class Client:
+    """A connection to a robot, for a ``with`` statement.
+
+    :param endpoint: where the robot listens
+    :raises RobotError: if nobody does
+    """
+
+    def __init__(self, endpoint: Endpoint) -> None:
+        self._endpoint = endpoint
+        self._session = endpoint.opened(listens=False)
+
+    def __enter__(self) -> Client:
+        """Nothing happens."""
+        return self
+
+    def __exit__(self, *error: object) -> None:
+        """Close the connection."""
+        self._session.close()
+
+    def ask(self, request: Request, seconds: float = WAIT_SECONDS) -> Iterator[Answer]:
+        """Ask the robot, and wait for its answers.
+
+        :param request: what to ask
+        :param seconds: time to wait for all of them, in s
+        :return: answers as they come; the last one is final
+        :raises RobotError: if it does not come
+        """
+        for reply in self._replies(request, seconds):
+            answer = from_json(Answer, reply)
+            yield answer
+            if answer.is_final:
+                return
+        raise RobotError(f"the robot at {self._endpoint.address} has gone before its last answer")
+
+    def state(self, seconds: float = WAIT_SECONDS) -> Telemetry:
+        """Ask what the robot does.
+
+        :param seconds: time to wait, in s
+        :raises RobotError: if no answer comes
+        """
+        for reply in self._replies(Request("state"), seconds):
+            if b'"outcome"' in reply:
+                raise RobotError(from_json(Answer, reply).reason)
+            return from_json(Telemetry, reply)
+        raise RobotError(f"the robot at {self._endpoint.address} has gone")
+
+    def _replies(self, request: Request, seconds: float) -> Iterator[bytes]:
+        """What the robot answers to a request, which is sent again if it was dropped unread."""
+        for _ in range(ATTEMPTS):
+            replies = self._replies_once(request, seconds)
+            first = next(replies, None)
+            if first is not None:
+                yield first
+                yield from replies
+                return
+            time.sleep(PAUSE_SECONDS)
+        raise RobotError(
+            f"no answer from {self._endpoint.address}: it is no sarah-robot, or more requests come than it reads"
+        )
+
+    def _replies_once(self, request: Request, seconds: float) -> Iterator[bytes]:
+        import zenoh
+
+        replies: Any = self._session.get(
+            REQUESTS,
+            payload=request.to_json(),
+            timeout=seconds,
+            consolidation=zenoh.ConsolidationMode.NONE,
+            congestion_control=zenoh.CongestionControl.BLOCK,
+        )
+        for reply in replies:
+            if reply.ok is None:
+                raise RobotError(f"no answer from {self._endpoint.address} within {seconds:g} s")
+            yield reply.ok.payload.to_bytes()
