@@ -18,9 +18,8 @@ from pandas import DataFrame
 from benchmarks.timing import Timing
 from experiments.record import Row
 from experiments.tables import table
-from sarah.cli.robot import LATE_SECONDS
 from sarah.drivers.loop import LoopTick
-from sarah.drivers.real_time import RealTime, undisturbed
+from sarah.drivers.real_time import LATE_SECONDS, RealTime, undisturbed
 from sarah.drivers.simulated_robot import simulated_loop
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import NO_PUSH

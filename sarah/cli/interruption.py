@@ -6,7 +6,7 @@ import contextlib
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from types import FrameType
 
 from sarah.errors import ResumeError, RunFolderError, SarahError, TaskError, TrainingInterruptedError
@@ -15,13 +15,14 @@ SIGNALS = (signal.SIGINT, signal.SIGTERM)
 
 
 @contextlib.contextmanager
-def first_signal_noted(message: str) -> Iterator[Callable[[], bool]]:
+def first_signal_noted(message: str, signals: Sequence[signal.Signals] = SIGNALS) -> Iterator[Callable[[], bool]]:
     """Context in which the first signal is only recorded, and the second has its usual effect.
 
     :param message: line to print on standard error at the first one
+    :param signals: signals for which this holds
     :return: function that says whether a signal has come
     """
-    before = {number: signal.getsignal(number) for number in SIGNALS}
+    before = {number: signal.getsignal(number) for number in signals}
     came: list[int] = []
 
     def restore() -> None:

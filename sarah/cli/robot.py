@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
-import math
+import signal
 import sys
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -15,19 +15,17 @@ import tyro
 
 from sarah.cli.endpoints import endpoint_of, with_endpoint
 from sarah.cli.episode_options import EpisodeOptions, parse_episode_options
-from sarah.cli.interruption import first_signal_noted
+from sarah.cli.interruption import SIGNALS, first_signal_noted
 from sarah.cli.options import as_command, named_task, say_engine
+from sarah.cli.robot_progress import Progress
 from sarah.cli.subjects import learned_of
 from sarah.control.hip_law import LOCKED_HIPS
-from sarah.control.pattern_generator import Phase
 from sarah.control.supervisor import State, Supervisor
-from sarah.drivers.driver import Driver
 from sarah.drivers.driver_file import mistakes_of, read_driver
 from sarah.drivers.faults import FAULTS
-from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, LoopTick, controller_for
-from sarah.drivers.real_time import LATE_SECONDS, RealTime, undisturbed
-from sarah.drivers.simulated_robot import FaultPlan, SimulatedRobot, simulated_loop
-from sarah.episode.ending import ending_words
+from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, controller_for
+from sarah.drivers.real_time import RealTime, undisturbed
+from sarah.drivers.simulated_robot import FaultPlan, simulated_loop
 from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
@@ -41,6 +39,8 @@ if TYPE_CHECKING:
     from sarah.logs.robot_log import RobotLog
 
 COMMAND = "sarah-robot"
+STOP_SECONDS = 1.0
+"""Time that a robot has to stop in the end, in s; it takes some tenths."""
 ANYWHERE = 100.0
 """Displacement at which the simulated robot ends, in m: it may go where it wants."""
 
@@ -113,9 +113,11 @@ def main() -> None:
         raise ConfigurationError("--stand needs a supervisor: leave --no-supervisor out")
     if options.listen is not None and not spec.config.supervisor.enabled:
         raise ConfigurationError("--listen needs a supervisor: leave --no-supervisor out")
-    if options.seconds is not None and options.driver is None:  # it ends by itself
-        spec = dataclasses.replace(spec, config=dataclasses.replace(spec.config, time_limit=options.seconds))
-    with first_signal_noted(f"{COMMAND}: the robot stops and stands; a second signal ends at once") as is_interrupted:
+    if options.seconds is not None and options.driver is None:
+        time_limit = options.seconds + STOP_SECONDS
+        spec = dataclasses.replace(spec, config=dataclasses.replace(spec.config, time_limit=time_limit))
+    message = f"{COMMAND}: the robot stops and stands; a second signal ends at once"
+    with first_signal_noted(message, (*SIGNALS, signal.SIGHUP)) as is_interrupted:
         _run(options, spec, is_interrupted)
 
 
@@ -127,8 +129,9 @@ def _supervised(config: EpisodeConfig, subject: str | None) -> EpisodeConfig:
 
 
 def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], bool]) -> None:
-    progress = Progress(spec.config.physics.control_dt)
     with contextlib.ExitStack() as stack:
+        progress = Progress(spec.config.physics.control_dt)
+        stack.callback(progress.close)
         server = None if options.listen is None else stack.enter_context(contextlib.closing(_server(options, spec)))
         loop = _loop(options, spec, [progress] if server is None else [progress, server])
         values = {**vars(loop.parameters), **vars(loop.balance)}
@@ -142,9 +145,8 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
         if options.driver is not None:
             stack.enter_context(mistakes_of(options.driver))
         while loop.tick():
-            if options.seconds is not None and progress.seconds >= options.seconds - 1.5 * loop.dt:
-                break
-            if is_interrupted() and not _still_moves(loop):
+            is_over = options.seconds is not None and progress.seconds >= options.seconds - 1.5 * loop.dt
+            if (is_over or is_interrupted()) and not _still_moves(loop):
                 break
     progress.report(loop.driver, options.real_time)
     if log is not None and (log.dropped or log.failure):
@@ -204,61 +206,3 @@ def _still_moves(loop: ControlLoop) -> bool:
     is_moving = controller.state is not State.STANDING or loop.ticks == 0
     controller.stand()
     return is_moving
-
-
-class Progress:
-    """Observer that prints a line a second, and what happened at the end.
-
-    :param dt: control period, in s
-    """
-
-    seconds: float
-    """Time of the last tick since the loop began, in s."""
-
-    def __init__(self, dt: float) -> None:
-        self._dt = dt
-        self._next = 1.0
-        self._ticks = self._late = self._steps = self._steps_before = 0
-        self._worst = self.seconds = 0.0
-
-    def __call__(self, tick: LoopTick) -> None:
-        """Count a tick, and print what the supervisor did."""
-        self._ticks += 1
-        self.seconds = tick.seconds
-        if tick.late_seconds > LATE_SECONDS:
-            self._late += 1
-        self._worst = max(self._worst, tick.late_seconds)
-        if tick.change is not None and tick.change.is_step:
-            self._steps += 1
-        controller = tick.controller
-        if isinstance(controller, Supervisor) and controller.state_change is not None:
-            print(f"{tick.seconds:8.2f} s  {controller.state.value}: {controller.state_change.reason}", flush=True)
-        if tick.seconds >= self._next - self._dt / 2:
-            self._next += 1.0
-            self._line(tick)
-
-    def _line(self, tick: LoopTick) -> None:
-        """Print a line of progress on standard error."""
-        controller, steps = tick.controller, self._steps - self._steps_before
-        self._steps_before = self._steps
-        words = ["unsupervised"]
-        if isinstance(controller, Supervisor):
-            words = [controller.state.value, f"tilt {math.degrees(controller.torso_tilt):.0f}°"]
-        words[0] += "" if controller.phase is Phase.STAND else f", {controller.phase.value}"
-        words += [f"{steps} steps per second", f"{self._late} late ticks"]
-        print(f"{tick.seconds:8.2f} s  {'; '.join(words)}", file=sys.stderr)
-
-    def report(self, driver: Driver, is_real_time: bool) -> None:
-        """Print what happened.
-
-        :param driver: driver of the robot
-        :param is_real_time: whether ticks had deadlines
-        """
-        print(f"{self._ticks} ticks in {self.seconds + self._dt:.2f} s, {self._steps} steps")
-        if is_real_time:
-            print(f"{self._late} ticks later than {1000 * LATE_SECONDS:g} ms; the worst by {1000 * self._worst:.2f} ms")
-        if isinstance(driver, SimulatedRobot):
-            x, y, _ = driver.result().final_position
-            print(f"the robot is {100.0 * math.hypot(x, y):.0f} cm from where it began")
-        if driver.ended and driver.ended != "time_limit":
-            print(f"the robot ended: {ending_words(driver.ended)}")

@@ -269,7 +269,7 @@ class Supervisor:
     @property
     def is_waiting(self) -> bool:
         """Whether it stands or has fallen, and steps only when it is asked to."""
-        return self.state in (State.STANDING, State.FALLEN) and not self._steps_when_asked
+        return self.state in (State.STANDING, State.FALLEN) and not self._is_to_step
 
     @property
     def is_moving(self) -> bool:

@@ -95,7 +95,8 @@ class Watches:
         :return: what is wrong; empty if nothing is
         """
         wrong = self.signals.tick(reading, seconds)
-        return self._slow.tick(self._complete(heard), targets, Phase.SHIFT) or wrong
+        slow = self._slow.tick(self._complete(heard), targets, Phase.SHIFT)
+        return wrong or slow  # whoever believes a stuck gyroscope sees a tilt
 
     def nothing_heard(self, unheard_seconds: float, seconds: float) -> str:
         """Look at a tick without a new reading.

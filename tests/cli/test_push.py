@@ -59,7 +59,7 @@ def test_a_robot_that_runs_takes_a_push(tmp_path: Path) -> None:
     process = done("sarah-robot", "balance", *words, "--largest-change", "0.1", "--log", "run.mcap", cwd=tmp_path)
     pusher.join()
     assert "2 sets asked for, 2 applied" in done("sarah-log", "run.mcap", cwd=tmp_path).stdout
-    assert answers == ["refused", "applied", "ended"] and f"listening at {endpoint.address}" in process.stderr
+    assert answers == ["refused", "applied", "stopped"] and f"listening at {endpoint.address}" in process.stderr
 
 
 @pytest.mark.parametrize(

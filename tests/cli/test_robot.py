@@ -24,7 +24,7 @@ def test_a_fault_stops_the_robot_which_says_why(tmp_path: Path) -> None:
     assert "500 ticks in 5.00 s" in process.stdout and "ended" not in process.stdout
     told = done("sarah-log", "run.mcap", cwd=tmp_path).stdout
     assert "500; 0 messages dropped" in told and f"{process.stdout.split(' s  ')[2].splitlines()[0]}" in told
-    assert re.search(r" 4\.00 s  standing; tilt \d°; 1 steps per second; 0 late ticks\n", process.stderr)
+    assert re.search(r" 4\.00 s  standing; tilt \d+°; 1 steps per second; 0 late ticks\n", process.stderr)
 
 
 def test_it_may_go_where_it_wants_and_its_episode_may_not(tmp_path: Path) -> None:
@@ -78,9 +78,9 @@ def own(tmp_path: Path) -> Path:
 def test_ctrl_c_lets_it_stop_and_stand(own: Path) -> None:
     scheduler = os.sched_getscheduler(0)
     process = done("sarah-robot", "balance", "--driver", "my_robot.py:ROBOT", "--real-time", cwd=own.parent)
-    said = process.stdout.splitlines()
-    assert [line.split(" s  ")[1] for line in said[1:3]] == ["stopping: asked to stand", "standing: stopped"]
-    assert said[3].startswith("off after 15") and "0 steps" in said[4] and "later than 2 ms" in said[5]
+    said = [line.split(" s  ")[1] for line in process.stdout.splitlines() if " s  " in line]
+    assert said[1:] == ["stopping: asked to stand", "standing: stopped"]
+    assert "off after 15" in process.stdout and ", 0 steps\n" in process.stdout and "later than 2 ms" in process.stdout
     assert "SCHED_FIFO" in process.stderr or "not granted" in process.stderr
     assert os.sched_getscheduler(0) == scheduler
 
