@@ -29,7 +29,7 @@ MAY_BE_0 = ("workers", "seed", "first_seed")
 SHARED_OPTIONS = """Every experiment has these options too:
 
   --quick           a size that takes seconds, and shows only that it runs
-  --only KEY=VALUE  cases with this value of one of their first columns; may be repeated
+  --only KEY=VALUE  cases with this value of one of their first columns; may be repeated, also for several values
   --out FOLDER      folder for the file
 """
 
@@ -49,7 +49,8 @@ def make(module: ModuleType, command: str, arguments: Sequence[str]) -> Path:
     default = module.QUICK if shared.quick else full
     experiment = parse_options(type(default), command, own, default)
     _check_counts(experiment)
-    cases = _chosen(experiment.cases(), shared.only)
+    every = experiment.cases()
+    cases = _chosen(every, shared.only)
     is_whole = dataclasses.replace(experiment, workers=full.workers) == full and not shared.only
     folder = shared.out or (record.RESULTS if is_whole else OTHER_RESULTS)
     if folder.resolve() == record.RESULTS and (changed := record.changed_files()):
@@ -58,7 +59,8 @@ def make(module: ModuleType, command: str, arguments: Sequence[str]) -> Path:
     whole = re.sub(r" --workers[ =]\S+", "", shlex.join([*command.split(), *arguments]))  # no row depends on them
     result = _begun(module, folder, whole)
     if result.name in record.names() and (known := record.read(result.name).minutes):
-        print(f"the whole takes {tqdm.format_interval(60.0 * known)} of one core (h:mm:ss)", file=sys.stderr)
+        seconds = 60.0 * known * len(cases) / len(every)
+        print(f"that takes about {tqdm.format_interval(seconds)} of one core (minutes:seconds)", file=sys.stderr)
     _compute(experiment, cases, result, folder)
     return folder / f"{result.name}.csv"
 
