@@ -61,7 +61,7 @@ class RobotOptions(EpisodeOptions):
         fast as they can
     :param stand: whether the robot only stands
     :param log: file to log to, such as run.mcap; sarah-log reads it
-    :param read_only: whether to read and compute without sending anything to the robot
+    :param read_only: whether to read and compute without sending anything to the robot; lines then show its signals
     :param listen: address at which ``sarah-push`` reaches the robot; without an address tcp/127.0.0.1:7447, which is
         open to every user of this machine. Other machines need an address tls/… and certificates
     :param largest_change: largest change of a parameter by a push, as a share of its range
@@ -130,7 +130,7 @@ def _supervised(config: EpisodeConfig, subject: str | None) -> EpisodeConfig:
 
 def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], bool]) -> None:
     with contextlib.ExitStack() as stack:
-        progress = Progress(spec.config.physics.control_dt)
+        progress = Progress(spec.config.physics.control_dt, options.read_only)
         stack.callback(progress.close)
         server = None if options.listen is None else stack.enter_context(contextlib.closing(_server(options, spec)))
         loop = _loop(options, spec, [progress] if server is None else [progress, server])

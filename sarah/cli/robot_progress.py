@@ -16,6 +16,7 @@ from sarah.drivers.loop import LoopTick
 from sarah.drivers.real_time import LATE_SECONDS
 from sarah.drivers.simulated_robot import SimulatedRobot
 from sarah.episode.ending import ending_words
+from sarah.robot.reading import SensorReading
 
 PATIENCE_SECONDS = 1.0
 """Time to wait at the end for whoever reads, in s."""
@@ -56,14 +57,15 @@ class Progress(Printer):
     """Observer that prints a line a second, and what happened at the end.
 
     :param dt: control period, in s
+    :param shows_signals: whether the lines show what the sensors say
     """
 
     seconds: float
     """Time of the last tick since the loop began, in s."""
 
-    def __init__(self, dt: float) -> None:
+    def __init__(self, dt: float, shows_signals: bool = False) -> None:
         super().__init__()
-        self._dt = dt
+        self._dt, self._shows_signals = dt, shows_signals
         self._next = 1.0
         self._ticks = self._late = self._steps = self._steps_before = 0
         self._worst = self.seconds = 0.0
@@ -94,6 +96,8 @@ class Progress(Printer):
             words = [controller.state.value, f"tilt {math.degrees(controller.torso_tilt):.0f}°"]
         words[0] += "" if controller.phase is Phase.STAND else f", {controller.phase.value}"
         words += [f"{steps} steps per second", f"{self._late} late ticks"]
+        if self._shows_signals:
+            words += ["no reading"] if tick.reading is None else _signals(tick.reading)
         self.say(f"{tick.seconds:8.2f} s  {'; '.join(words)}", sys.stderr)
 
     def report(self, driver: Driver, is_real_time: bool) -> None:
@@ -110,3 +114,12 @@ class Progress(Printer):
             print(f"the robot is {100.0 * math.hypot(x, y):.0f} cm from where it began")
         if driver.ended and driver.ended != "time_limit":
             print(f"the robot ended: {ending_words(driver.ended)}")
+
+
+def _signals(reading: SensorReading) -> list[str]:
+    """What the sensors say, in words."""
+    acceleration, angular_rate = (" ".join(f"{value:+.2f}" for value in signal) for signal in reading[:2])
+    left_fore, left_hind, right_fore, right_hind = reading.pressures
+    loads = f"{left_fore + left_hind:.0f} {right_fore + right_hind:.0f}"
+    joints = " ".join(f"{value:+.2f}" for value in reading.joints)
+    return [f"acceleration {acceleration}", f"angular rate {angular_rate}", f"loads {loads}", f"joints {joints}"]

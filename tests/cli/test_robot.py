@@ -87,7 +87,9 @@ def test_ctrl_c_lets_it_stop_and_stand(own: Path) -> None:
 
 def test_nothing_is_sent_to_a_robot_that_is_only_read(own: Path) -> None:
     words = ("--driver", "my_robot.py:ROBOT", "--real-time", "--read-only", "--seconds", "1.2")
-    assert "off" not in done("sarah-robot", "balance", *words, cwd=own.parent).stdout
+    process = done("sarah-robot", "balance", *words, cwd=own.parent)
+    assert "off" not in process.stdout
+    assert re.search(r"acceleration \+0.00 \+0.00 \+9.81; angular rate .*; loads 0 0; joints \+0.00 ", process.stderr)
 
 
 @pytest.mark.parametrize(
