@@ -43,6 +43,11 @@ class ViewOptions(EpisodeOptions):
         episodes.csv; by default ``learned``, or ``best`` if the training is not finished
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0
     :param out: HTML file to write the episode to, instead of showing a page; the file needs no server
+    :param robot: address at which a robot of ``sarah-robot --listen`` runs, such as tcp/127.0.0.1:7447: the page shows
+        what it does now. The subject then has its dimensions
+    :param authority: for TLS to that robot: certificate of the authority that has signed both certificates, a PEM file
+    :param certificate: for TLS: own certificate, a PEM file
+    :param key: for TLS: private key of that certificate, a PEM file
     :param host: address to serve the page at. Everyone who can reach another address than 127.0.0.1 can use the page,
         because there is no password
     :param port: port to serve the page at; the next free one if it is taken
@@ -52,6 +57,10 @@ class ViewOptions(EpisodeOptions):
     which: Annotated[str | None, tyro.conf.arg(metavar="learned|best|INDEX")] = None
     seed: int | None = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    robot: Annotated[str | None, tyro.conf.arg(metavar="ENDPOINT")] = None
+    authority: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    certificate: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    key: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     host: str = "127.0.0.1"
     port: Annotated[int, Within(1, 2**16 - 1)] = DEFAULT_PORT
 
@@ -75,7 +84,11 @@ def main() -> None:
         chosen = chosen.of(dataclasses.replace(chosen.spec, seed=options.seed))
         chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {options.seed}")
         choices.insert(0, chosen)
-    if options.out is not None:
+    if options.robot is not None:
+        if options.out is not None:
+            raise ConfigurationError("--robot shows a robot as it runs: leave --out out")
+        _serve_live(options, options.robot, chosen.spec)
+    elif options.out is not None:
         _export(options.out, chosen)
     else:
         _serve(options, choices, chosen)
@@ -104,6 +117,27 @@ def _export(path: Path, chosen: RunEpisode) -> None:
     say_next(to_open(path))
 
 
+def _serve_live(options: ViewOptions, robot: str, spec: EpisodeSpec) -> None:
+    from sarah.cli.endpoints import endpoint_of
+    from sarah.remote.client import Client
+    from sarah.viewer.live import LiveRobot
+    from sarah.viewer.server import serving
+
+    endpoint = endpoint_of(robot, options.authority, options.certificate, options.key)
+    with Client(endpoint) as client, serving(options.host, options.port) as server:
+        live = LiveRobot(server, spec)
+        _say_address(options, server.get_port())
+        with contextlib.suppress(KeyboardInterrupt):
+            for telemetry in client.telemetry():
+                live.show(telemetry)
+
+
+def _say_address(options: ViewOptions, port: int) -> None:
+    if options.host not in LOCAL:
+        print(f"warning: everyone who can reach {options.host} can use this page, because there is no password")
+    print(f"SARAH is at http://{options.host}:{port} (Ctrl-C ends)", flush=True)
+
+
 def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) -> None:
     from sarah.viewer.page import Page
     from sarah.viewer.server import serving
@@ -113,9 +147,7 @@ def _serve(options: ViewOptions, choices: list[RunEpisode], chosen: RunEpisode) 
         say_engine(chosen.spec.config)
         if is_shipped(options.subject):
             print(f"{options.subject}: {PARAMETER_SETS[options.subject].origin}")
-        if options.host not in LOCAL:
-            print(f"warning: everyone who can reach {options.host} can use this page, because there is no password")
-        print(f"SARAH is at http://{options.host}:{server.get_port()} (Ctrl-C ends)", flush=True)
+        _say_address(options, server.get_port())
         with contextlib.suppress(KeyboardInterrupt):
             threading.Event().wait()
         page.close()

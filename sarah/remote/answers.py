@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from enum import Enum
 from typing import Any, TypeVar
@@ -66,6 +66,9 @@ class Telemetry:
     :param tilt: lateral acceleration towards the stance leg, in m/s^2
     :param parameters: values of P1 to P5 and V1 to V4 that it was given; in its first second those of the paper
     :param late_ticks: number of late ticks so far
+    :param stance: side of the leg that carries the robot: +1 right, -1 left
+    :param reading: newest sensor signals by the names of :class:`~sarah.robot.reading.SensorReading`; ``None`` if there
+        are none, or one is no number
     """
 
     tick: int
@@ -77,6 +80,8 @@ class Telemetry:
     tilt: float
     parameters: Mapping[str, float]
     late_ticks: int
+    stance: int
+    reading: Mapping[str, Sequence[float]] | None
 
 
 Message = TypeVar("Message", Answer, Telemetry)

@@ -8,11 +8,13 @@ from typing import Any
 
 from sarah.errors import RobotError
 from sarah.remote.answers import Answer, Telemetry, from_json
-from sarah.remote.endpoints import REQUESTS, Endpoint
+from sarah.remote.endpoints import REQUESTS, TELEMETRY, Endpoint
 from sarah.remote.requests import Request
 
 WAIT_SECONDS = 30.0
 """Time to wait for all answers, in s: a swap of legs may take some, and new parameters are proven after five more."""
+SILENT_SECONDS = 5.0
+"""Time without telemetry after which a robot counts as gone, in s."""
 ATTEMPTS, PAUSE_SECONDS = 20, 0.05
 """Number of times that a request is sent which the robot drops unread, as in a flood, and time between them, in s."""
 
@@ -62,6 +64,30 @@ class Client:
                 raise RobotError(from_json(Answer, reply).reason)
             return from_json(Telemetry, reply)
         raise RobotError(f"the robot at {self._endpoint.address} has gone")
+
+    def telemetry(self, seconds: float = SILENT_SECONDS) -> Iterator[Telemetry]:
+        """What the robot does, twenty times a second; whoever is slow misses some.
+
+        :param seconds: time without telemetry after which the robot counts as gone, in s
+        :raises RobotError: if it has gone
+        """
+        import zenoh
+
+        newest: Any = zenoh.handlers.RingChannel(1)
+        subscriber: Any = self._session.declare_subscriber(TELEMETRY, newest)
+        last = time.monotonic()
+        try:
+            while True:
+                sample = subscriber.try_recv()
+                if sample is not None:
+                    last = time.monotonic()
+                    yield from_json(Telemetry, sample.payload.to_bytes())
+                elif time.monotonic() - last > seconds:
+                    raise RobotError(f"the robot at {self._endpoint.address} has gone")
+                else:
+                    time.sleep(PAUSE_SECONDS / 5)
+        finally:
+            subscriber.undeclare()
 
     def _replies(self, request: Request, seconds: float) -> Iterator[bytes]:
         """What the robot answers to a request, which is sent again if it was dropped unread."""

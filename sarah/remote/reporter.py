@@ -12,6 +12,7 @@ from sarah.drivers.real_time import LATE_SECONDS
 from sarah.operation.settings import PARAMETERS
 from sarah.remote.answers import Telemetry
 from sarah.remote.slot import present
+from sarah.robot.reading import SensorReading
 
 RATE = 20.0
 """Telemetry per second."""
@@ -70,4 +71,13 @@ class Reporter:
             round(supervisor.tilt, 4),
             dict(zip(names, present(supervisor), strict=True)),
             self._late,
+            supervisor.stance.value,
+            _signals(tick.reading),
         )
+
+
+def _signals(reading: SensorReading | None) -> dict[str, list[float]] | None:
+    """Signals of a reading that is whole."""
+    if reading is None or not reading.is_finite:
+        return None
+    return {name: [round(float(value), 5) for value in signal] for name, signal in reading._asdict().items()}
