@@ -101,4 +101,5 @@ def test_memory_and_open_files_stay_flat() -> None:
 
     memory, files = usage_after(60)
     later_memory, later_files = usage_after(200)
-    assert later_files <= files and later_memory - memory < 8 * 2**20
+    assert later_files < files + 20  # as other threads may open some
+    assert later_memory - memory < 8 * 2**20

@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from statistics import median
 from typing import NamedTuple
 
+import tyro
 from pandas import DataFrame
 
 from experiments.experiment import Experiment, product, survival_of
@@ -48,10 +49,11 @@ class SensorFaults(Experiment):
 
     seeds: int = 20  # number of robots
     seconds: float = 10.0  # time after the fault, in s
+    faults: tyro.conf.Suppress[tuple[str, ...]] = tuple(FAULTS)  # which
 
     def cases(self) -> list[Row]:
         """Each fault, engine and kind of robot."""
-        return product(fault=FAULTS, engine=ENGINES, supervisor=(WITHOUT, WITH))
+        return product(fault=self.faults, engine=ENGINES, supervisor=(WITHOUT, WITH))
 
     def rows(self, fault: str, engine: Engine, supervisor: str) -> Iterator[Row]:
         """Survival, steps per second from the fault on, and how many robots the supervisor stopped, and when."""
@@ -91,7 +93,7 @@ class SensorFaults(Experiment):
 
 
 FULL = SensorFaults()
-QUICK = SensorFaults(seeds=1, seconds=1.0)
+QUICK = SensorFaults(seeds=1, seconds=1.0, faults=("none", "rate about y: stuck"))
 
 
 def faults(rows: DataFrame) -> str:
