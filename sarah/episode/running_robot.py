@@ -77,7 +77,7 @@ class RunningRobot(HoldsWorld):
         dt = config.physics.control_dt
         limits = [self.description.limits[joint] for joint in ACTUATED_JOINTS]
         stepping = SteppingParameters(*PAPER_STEPPING)
-        self.generator: Controller = (
+        self.generator = (
             Supervisor(stepping, dt=dt, limits=limits, constants=config.controller, settings=config.supervisor)
             if config.supervisor.enabled
             else PatternGenerator(stepping, dt=dt, limits=limits, constants=config.controller)
