@@ -41,6 +41,8 @@ if TYPE_CHECKING:
 COMMAND = "sarah-robot"
 STOP_SECONDS = 1.0
 """Time that a robot has to stop in the end, in s; it takes some tenths."""
+OF_SIMULATION = ("--engine", "--physics", "--seed")
+"""Options of the simulated robot alone."""
 ANYWHERE = 100.0
 """Displacement at which the simulated robot ends, in m: it may go where it wants."""
 
@@ -109,6 +111,9 @@ def main() -> None:
     options = parse_episode_options(COMMAND, arguments, RobotOptions(), adapted=_supervised)
     own, _ = learned_of(options.subject, named_task(options.task))
     spec = options.applied_to(own)
+    words = [argument.partition("=")[0] for argument in arguments]
+    if options.driver is not None and (given := [name for name in OF_SIMULATION if name in words]):
+        raise ConfigurationError(f"{given[0]} is for the simulated robot: leave out --driver or {given[0]}")
     if options.stand and not spec.config.supervisor.enabled:
         raise ConfigurationError("--stand needs a supervisor: leave --no-supervisor out")
     if options.listen is not None and not spec.config.supervisor.enabled:

@@ -124,6 +124,8 @@ class _Servos:
                 joint = ACTUATED_JOINTS[index]
                 self.lost.add(index)
                 self._warnings.give(joint, f"servo: {joint} does not follow its target")
+            elif abs(mean) < 0.5 * self._largest:
+                self.lost.discard(index)
 
 
 class _Tilt:

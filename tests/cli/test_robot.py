@@ -119,6 +119,7 @@ def test_mistakes_are_one_line(answer: Answer) -> None:
         ("--driver my_robot.py:ROBOT", "--driver needs --real-time: a robot's time passes by the clock"),
         ("--driver my_robot.py:ROBOT --real-time", "there is no file my_robot.py with a driver"),
         ("--driver my_robot.py:ROBOT --fault 'all pads: 0 N'", "--fault is for the simulated robot"),
+        ("--driver my_robot.py:ROBOT --real-time --engine mujoco", "--engine is for the simulated robot"),
         ("--stand --no-supervisor", "--stand needs a supervisor: leave --no-supervisor out"),
     ):
         assert words in answer(f"sarah-robot balance {line}")

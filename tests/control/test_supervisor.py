@@ -8,11 +8,12 @@ from itertools import pairwise
 import pytest
 from hand_made import BALANCE, DT, rocking
 
+from sarah.control.constants import STANDARD_CONSTANTS
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, Phase, SteppingParameters
 from sarah.control.supervisor import State, Supervisor
 from sarah.control.supervisor_settings import SupervisorSettings
-from sarah.control.watches import NOTHING
+from sarah.control.watches import NOTHING, Watches
 from sarah.robot.reading import SensorReading
 
 STEPPING = SteppingParameters(*PAPER_STEPPING)
@@ -322,3 +323,12 @@ def test_parameters_that_change_all_the_time_do_not_hide_that_it_does_not_step()
         supervisor.set_parameters(SteppingParameters(0.4 + 1e-6 * tick, *PAPER_STEPPING[1:]))
         supervisor.tick(noisy(STANDING, tick))
     assert supervisor.state is State.STANDING
+
+
+def test_a_joint_is_believed_again_when_it_follows() -> None:
+    watches, lost = Watches(SupervisorSettings(), DT, STANDARD_CONSTANTS), []
+    for tick, reading in zip(range(300), readings(), strict=False):
+        seen = reading._replace(joints=(0.0, 0.3 if 100 <= tick < 200 else 0.0, 0.0, 0.0, 0.0, 0.0))
+        watches.tick(seen, seen, DT, (0.0,) * 6, Phase.STAND, None)
+        lost.append(set(watches.lost_joints))
+    assert (lost[50], lost[190], lost[299]) == (set(), {1}, set())
