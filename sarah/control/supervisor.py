@@ -96,7 +96,7 @@ class Supervisor:
         self.state_change = None
         self.targets = STANDING_TARGETS
         self._before: tuple[float, ...] = ()
-        self._unheard = math.inf
+        self._unheard, self._told = math.inf, ""
         self._begin()
 
     def _begin(self) -> None:
@@ -167,11 +167,14 @@ class Supervisor:
         self, reading: SensorReading, heard: SensorReading, seconds: float | None, passed: float
     ) -> PhaseChange | None:
         """A tick of the generator, which the watches look at."""
+        if self._is_paused and self.state is State.STANDING:
+            self._begin()
         self._is_paused = False
         targets, phase = self.targets, self.generator.phase
         change = self.generator.tick(self._without_lost_joints(heard), seconds)
         wrong = self._watches.tick(reading, heard, passed, targets, phase, change)
         if change is not None and change.ended is Phase.STAND:
+            self._told = ""
             self._enter(State.STEPPING, "stood for a second")
         if self.generator.has_fallen:
             self._enter(State.FALLEN, "fallen: the torso lies")
@@ -187,9 +190,7 @@ class Supervisor:
 
     def _wait(self, seconds: float) -> None:
         """Stand while there is nothing to act on; the generator waits, or stands for a whole second afterwards."""
-        if self.state is State.STANDING:
-            self._begin()
-        elif not self._is_paused:
+        if not self._is_paused:
             self._is_paused = self._is_catching_up = True
             self._enter(self.state, "no new reading: the targets go to zero until there is one")
         self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
@@ -238,7 +239,10 @@ class Supervisor:
         """Do what a fault asks for; before the first step, stand for another second."""
         proven = self._proven
         if self.state is State.STANDING:
-            self._enter(State.STANDING, f"stands for another second: {wrong}")
+            kind, _, _ = wrong.partition(":")
+            if kind != self._told:  # a sensor that is dead from the beginning is told of once
+                self._told = kind
+                self._enter(State.STANDING, f"stands for another second: {wrong}")
             self._begin()
         elif wrong.startswith("tilt"):
             self._enter(State.FALLEN, wrong)

@@ -332,3 +332,14 @@ def test_a_joint_is_believed_again_when_it_follows() -> None:
         watches.tick(seen, seen, DT, (0.0,) * 6, Phase.STAND, None)
         lost.append(set(watches.lost_joints))
     assert (lost[50], lost[190], lost[299]) == (set(), {1}, set())
+
+
+def test_a_sensor_that_is_dead_from_the_beginning_is_told_of_once() -> None:
+    supervisor, said = supervised(), []
+    for tick in range(500):
+        seen = noisy(STANDING, tick)
+        dead = seen._replace(angular_rate=(seen.angular_rate[0], 0.0, seen.angular_rate[2]))
+        supervisor.tick(None if tick < 50 else dead)
+        said += [supervisor.state_change.reason] if supervisor.state_change is not None else []
+    assert supervisor.state is State.STANDING and len(said) == 2
+    assert said[0].startswith("no new reading") and said[1].startswith("stands for another second: frozen")
