@@ -17,6 +17,7 @@ from sarah.drivers.real_time import RealTime
 from sarah.remote.endpoints import Endpoint
 from sarah.remote.requests import LearnedWith
 from sarah.remote.server import Server
+from sarah.remote.slot import Slot
 
 FASTER = 5
 """Number by which time passes faster than by the clock."""
@@ -50,7 +51,7 @@ def robot(endpoint: Endpoint) -> Iterator[ControlLoop]:
     """A robot that steps and listens."""
     stepping, stop = SteppingParameters(*PAPER_STEPPING), threading.Event()
     controller = Supervisor(stepping, BALANCE, DT, settings=SupervisorSettings(enabled=True))
-    with closing(Server(endpoint, LearnedWith(), DT)) as server:
+    with closing(Server(endpoint, LearnedWith(), Slot(DT))) as server:
         loop = ControlLoop(Rocking(), controller, stepping, BALANCE, DT, RealTime(DT / FASTER), [server])
 
         def run() -> None:

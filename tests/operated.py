@@ -61,7 +61,7 @@ class FormulaRobot(RobotInOperation):
 
     def mean_reward(self, begin: float = 0.0, end: float = math.inf) -> float:
         """Mean reward without noise in a span of minutes."""
-        found = [w.score for w in self.seen if 60.0 * begin < w.end <= 60.0 * end]
+        found = [w.worth for w in self.seen if 60.0 * begin < w.end <= 60.0 * end]
         return sum(found) / len(found)
 
 

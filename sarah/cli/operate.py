@@ -15,8 +15,9 @@ import tyro
 from sarah.cli.episode_options import EpisodeOptions, given_options, parse_episode_options
 from sarah.cli.former_names import say_present, with_out
 from sarah.cli.going_on import check_extendable, check_same, finished_words
-from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_watch
+from sarah.cli.operate_robot import check_effect, config_for, operate_robot, robot_found
+from sarah.cli.operate_text import summarise, watched
 from sarah.cli.operated import OperatedConfig, say_differences, settings_in_operation, times_of_session
 from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import episode_of, is_shipped
@@ -25,17 +26,18 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
 from sarah.episode.tasks import BALANCE, STEPPING
 from sarah.errors import ConfigurationError, shortened
-from sarah.files import quoted
 from sarah.formats import read_yaml
 from sarah.logs.chunk_file import check_new
 from sarah.number import number
-from sarah.operation.settings import PARAMETERS, Change, OperationConfig, Parameters
+from sarah.operation.settings import Change, OperationConfig, Parameters
+from sarah.ranges import Within
+from sarah.remote.remote_robot import GONE_SECONDS
+from sarah.remote.requests import LearnedWith
 from sarah.runs.kinds import SESSION
 from sarah.runs.session import FORMER_LEARNERS, SessionSpec
 from sarah.simulation.engines import check_engine
 
 if TYPE_CHECKING:
-    from sarah.operation.window import Window
     from sarah.runs.session_folder import SessionFolder
     from sarah.training.operate import SessionResult
 
@@ -71,6 +73,12 @@ class OperateOptions(EpisodeOptions):
     :param compare_frozen: whether to run the same robot again without learning, with its first parameters throughout,
         and to show both. It takes as long again, and changes nothing in the session
     :param log: MCAP file for a log of the session from its beginning, which must be new; sarah-log reads it
+    :param robot: address of a robot that runs by itself, with ``sarah-robot --listen``, such as tcp/127.0.0.1:7447: it
+        is operated instead of a simulated one. The seed is then the learner's only
+    :param gone_seconds: with --robot: time after which a robot that has gone is given up, in s
+    :param authority: for TLS to that robot: certificate of the authority that has signed both certificates, a PEM file
+    :param certificate: for TLS: own certificate, a PEM file
+    :param key: for TLS: private key of that certificate, a PEM file
     """
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
@@ -87,6 +95,11 @@ class OperateOptions(EpisodeOptions):
     extended_from: tuple[float, ...] = ()
     compare_frozen: bool = False
     log: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    robot: Annotated[str | None, tyro.conf.arg(metavar="ENDPOINT")] = None
+    gone_seconds: Annotated[float, Within(0.0, 1e6, "s")] = GONE_SECONDS
+    authority: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    certificate: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
+    key: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
 
 
 @as_command(COMMAND)
@@ -97,6 +110,8 @@ def main() -> None:
         if argument.partition("=")[0].replace("_", "-") in WITHOUT_EFFECT:
             raise ConfigurationError(f"{argument} has no effect in an operation: leave it out")
     options = _parsed(arguments)
+    if options.resume is None:
+        check_effect(arguments, options.robot is not None)
     if options.log is not None:
         check_new(options.log)
     folder = _begun(options) if options.resume is None else _resumed(options, arguments)
@@ -109,12 +124,16 @@ def main() -> None:
     print(f"operating for {spec.config.minutes:g} min with learner {spec.learner} into {folder.path}", flush=True)
     if folder.frozen is not None:
         print(f"and then without learning, which takes as long again, into {folder.frozen_path}", flush=True)
-    run = partial(operate, folder, spec)
-    result = _watched(run if options.log is None else logged(run, options.log, spec, COMMAND), spec, folder.path)
+    run: Callable[..., SessionResult] = partial(operate, folder, spec)
+    if folder.robot is not None:
+        run = operate_robot(folder, spec, folder.robot)
+    elif options.log is not None:
+        run = logged(run, options.log, spec, COMMAND)
+    result = watched(run, spec, folder.path)
     frozen = None
     if folder.frozen is not None:
-        frozen = _watched(partial(compare_frozen, folder, spec, result), spec, folder.path, "without learning ")
-    _summarise(result, frozen, spec, folder.path)
+        frozen = watched(partial(compare_frozen, folder, spec, result), spec, folder.path, "without learning ")
+    summarise(result, frozen, spec, folder.path)
     say_next(to_see(folder.path), ("test it", ("sarah-eval", folder.path)), to_watch(folder.path))
 
 
@@ -125,6 +144,8 @@ def _begun(options: OperateOptions) -> SessionFolder:
 
     if present := FORMER_LEARNERS.get(options.learner):
         say_present(COMMAND, f"--learner {options.learner}", "--learner", present)
+    if options.robot is not None:
+        return _begun_with(options, options.robot)
     spec = _spec_of(options)
     _check_learns(options, spec)
     for count in range(len(spec.config.changes) + 1):
@@ -138,6 +159,25 @@ def _begun(options: OperateOptions) -> SessionFolder:
     return folder
 
 
+def _begun_with(options: OperateOptions, address: str) -> SessionFolder:
+    """The folder of a new session whose robot runs by itself."""
+    from sarah.recorded.folder import new_path
+    from sarah.runs.session_folder import SessionFolder
+
+    subject = episode_of(options.subject, None, named_task(options.task)).spec
+    is_known = Path(options.subject).is_dir() or is_shipped(options.subject)  # numbers have no settings
+    learned_with = LearnedWith.of(subject.config) if is_known else None
+    SessionSpec(learner=options.learner)  # refuses what is none before anybody is asked
+    files = (options.authority, options.certificate, options.key)
+    robot, found = robot_found(address, files, options.gone_seconds)
+    times = {name: getattr(options, name) for name in ("minutes", "settle_seconds", "measure_seconds", "extended_from")}
+    spec = SessionSpec(_nine(subject), options.learner, options.seed, config_for(found, learned_with, **times))
+    path = options.out or new_path("operation", f"{spec.learner}-s{spec.seed}")
+    folder = SessionFolder.create(path, spec, robot=robot)
+    print(f"the robot at {address} is {robot.robot}, on {robot.host}")
+    return folder
+
+
 def _resumed(options: OperateOptions, arguments: Sequence[str]) -> SessionFolder | None:
     """The folder of the session to go on with, which may be extended; ``None`` if nothing is left to do."""
     from sarah.runs.session_folder import SessionFolder
@@ -146,6 +186,8 @@ def _resumed(options: OperateOptions, arguments: Sequence[str]) -> SessionFolder
     assert options.resume is not None
     given = _check_alone(arguments)
     folder = SessionFolder.open(options.resume)
+    if folder.robot is not None and options.compare_frozen:
+        raise ConfigurationError("--compare-frozen needs a simulated robot: leave it out")
     _check_learns(options, folder.spec())
     there = folder.spec().config.minutes
     minutes = options.minutes if "minutes" in given else there
@@ -235,56 +277,3 @@ def change_of(text: str) -> Change:
         raise ConfigurationError(
             f'change must be a minute and a setting, such as "5: randomisation.actuator_bandwidth=12", not {text!r}'
         ) from None
-
-
-def _watched(
-    run: Callable[[Callable[[Window], None], Callable[[], bool]], SessionResult],
-    spec: SessionSpec,
-    path: Path,
-    title: str = "",
-) -> SessionResult:
-    """Run a session with a progress bar; if it stops early, the message says how to go on.
-
-    :param run: function that runs it, of one that is called with every window and one that says whether to stop
-    :param spec: specification of the session
-    :param path: path of its folder
-    :param title: words before the bar
-    """
-    from tqdm import tqdm
-
-    go_on = f"go on with {COMMAND} --resume {quoted(path)}"
-    falls, seconds = 0, 60.0 * spec.config.minutes
-    bar = tqdm(total=seconds, desc=title, disable=None, bar_format="{l_bar}{bar}| {n:.0f} of {total:.0f} s{postfix}")
-
-    def show(window: Window) -> None:
-        nonlocal falls
-        falls += window.fell
-        bar.set_postfix(window=window.index, score=f"{window.score:.2f}", falls=falls, changes=window.changes)
-        bar.update(min(window.end, seconds) - bar.n)
-
-    with bar, interruptible(COMMAND, "window", go_on) as interrupted:
-        return run(show, interrupted)
-
-
-def _summarise(result: SessionResult, frozen: SessionResult | None, spec: SessionSpec, path: Path) -> None:
-    named = zip((parameter.name for parameter in PARAMETERS), result.parameters, strict=True)
-    print("\nleft with   " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
-    print(f"score       {scores_of(result)}")
-    print(f"falls       {result.falls} in {len(result.windows)} windows")
-    if frozen is not None:
-        print(f"frozen      {scores_of(frozen)}; falls: {frozen.falls} in {len(frozen.windows)} windows")
-    for change in spec.config.changes[result.windows[-1].changes :]:
-        print(f"no change   at minute {change.minute:g}: no window began after it")
-    print(f"folder      {path}")
-
-
-def scores_of(result: SessionResult) -> str:
-    """Mean score of a session, and how it went from its first fifth to its last.
-
-    :param result: result of the session
-    """
-    scores = [window.score for window in result.windows]
-    fifth = max(1, len(scores) // 5)
-    first, last = sum(scores[:fifth]) / fifth, sum(scores[-fifth:]) / fifth
-    windows = "window" if fifth == 1 else f"{fifth} windows"
-    return f"{result.mean_score():.3f}: {first:.3f} in the first {windows}, {last:.3f} in the last"

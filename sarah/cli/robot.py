@@ -25,15 +25,18 @@ from sarah.drivers.driver_file import mistakes_of, read_driver
 from sarah.drivers.faults import FAULTS
 from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, controller_for
 from sarah.drivers.real_time import RealTime, undisturbed
-from sarah.drivers.simulated_robot import FaultPlan, simulated_loop
+from sarah.drivers.simulated_robot import FaultPlan, SimulatedRobot, simulated_loop
 from sarah.episode.push import NO_PUSH, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
 from sarah.errors import ConfigurationError, unknown_name
 from sarah.ranges import Within
+from sarah.remote.identity import identity_of
+from sarah.remote.measurement import Meter
 from sarah.remote.requests import LARGEST_CHANGE, LearnedWith
 from sarah.remote.server import Server
+from sarah.remote.slot import Slot
 
 if TYPE_CHECKING:
     from sarah.logs.robot_log import RobotLog
@@ -52,13 +55,14 @@ class RobotOptions(EpisodeOptions):
     """Run the controller on a robot: tick by tick, with a supervisor that stops it when something fails.
 
     Without --driver the robot is simulated. It may go where it wants, and nobody pushes it, unless options say
-    otherwise. Ctrl-C lets it stop and stand, and a second one ends at once.
+    otherwise. With --listen it goes on where an episode would end, and is put up two seconds after a fall. Ctrl-C lets
+    it stop and stand, and a second one ends at once.
 
     :param subject: run folder; numbers separated by commas, P1 to P5 for stepping, or V1 to V4 for the task balance; or
         the name of shipped parameters: ``paper``, ``stepping`` or ``balance``
     :param driver: file of a robot's driver and its name in there, such as my_robot.py:ROBOT. The file is run
     :param seconds: time for which it runs, with the second of standing, in s; by default until Ctrl-C, or the end of
-        the simulated episode
+        the simulated episode, which one that listens does not have
     :param real_time: whether a tick begins each control period by the clock; without it, ticks follow each other as
         fast as they can
     :param stand: whether the robot only stands
@@ -66,6 +70,8 @@ class RobotOptions(EpisodeOptions):
     :param read_only: whether to read and compute without sending anything to the robot; lines then show its signals
     :param listen: address at which ``sarah-push`` reaches the robot; without an address tcp/127.0.0.1:7447, which is
         open to every user of this machine. Other machines need an address tls/… and certificates
+    :param lockstep: whether the simulated robot waits for the learner of ``sarah-operate --robot`` between windows: no
+        time passes while nobody asks it for something
     :param largest_change: largest change of a parameter by a push, as a share of its range
     :param authority: for TLS: certificate of the authority that has signed those of robot and pushers, a PEM file
     :param certificate: for TLS: certificate of the robot, a PEM file
@@ -84,6 +90,7 @@ class RobotOptions(EpisodeOptions):
     log: Annotated[Path | None, tyro.conf.arg(metavar="FILE.mcap")] = None
     read_only: bool = False
     listen: Annotated[str | None, tyro.conf.arg(metavar="[ENDPOINT]")] = None
+    lockstep: bool = False
     largest_change: Annotated[float, Within(0.0, 1.0)] = LARGEST_CHANGE
     authority: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     certificate: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
@@ -102,6 +109,10 @@ class RobotOptions(EpisodeOptions):
             raise ConfigurationError("--fault is for the simulated robot: leave out --driver or --fault")
         if self.driver is not None and not self.real_time:
             raise ConfigurationError("--driver needs --real-time: a robot's time passes by the clock")
+        if self.lockstep and self.real_time:
+            raise ConfigurationError("--lockstep stops the robot's time: leave out --lockstep or --real-time")
+        if self.lockstep and self.listen is None:
+            raise ConfigurationError("--lockstep waits for those who reach the robot: it needs --listen")
 
 
 @as_command(COMMAND)
@@ -137,8 +148,11 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
     with contextlib.ExitStack() as stack:
         progress = Progress(spec.config.physics.control_dt, options.read_only)
         stack.callback(progress.close)
-        server = None if options.listen is None else stack.enter_context(contextlib.closing(_server(options, spec)))
-        loop = _loop(options, spec, [progress] if server is None else [progress, server])
+        loop = _loop(options, spec, [progress])
+        server = None
+        if options.listen is not None:
+            server = stack.enter_context(contextlib.closing(_server(options, spec, loop, is_interrupted)))
+            loop.observers = (*loop.observers, server)
         values = {**vars(loop.parameters), **vars(loop.balance)}
         print(", ".join(f"{name} {value:.3g}" for name, value in values.items()), file=sys.stderr)
         stack.callback(loop.driver.close)
@@ -172,12 +186,20 @@ def _logged(options: RobotOptions, spec: EpisodeSpec, loop: ControlLoop) -> Robo
     return log
 
 
-def _server(options: RobotOptions, spec: EpisodeSpec) -> Server:
+def _server(options: RobotOptions, spec: EpisodeSpec, loop: ControlLoop, is_interrupted: Callable[[], bool]) -> Server:
     """What lets others reach the robot."""
     assert options.listen is not None
     endpoint = endpoint_of(options.listen, options.authority, options.certificate, options.key)
-    robot, dt = LearnedWith.of(spec.config), spec.config.physics.control_dt
-    server = Server(endpoint, robot, dt, options.largest_change)
+    robot = loop.driver
+    truth = robot if isinstance(robot, SimulatedRobot) else None
+    simulated = f"simulated by {spec.config.engine}, seed {options.seed}"
+    server = Server(
+        endpoint,
+        LearnedWith.of(spec.config),
+        Slot(loop.dt, options.largest_change, Meter(spec.config, truth)),
+        identity_of(spec.config, options.driver or simulated, options.lockstep, truth is not None),
+        lambda: options.lockstep and not is_interrupted(),
+    )
     print(f"listening at {endpoint.address}", file=sys.stderr)
     return server
 
@@ -191,7 +213,8 @@ def _loop(options: RobotOptions, spec: EpisodeSpec, observers: Sequence[LoopObse
         failing = "" if options.fault == "none" else f", from {1.0 + options.fault_after:g} s on: {options.fault}"
         print(f"simulated by {config.engine}, seed {options.seed}{failing}", file=sys.stderr)
         plan = FaultPlan(FAULTS[options.fault], options.fault_after)
-        _, loop = simulated_loop(dataclasses.replace(spec, seed=options.seed), plan, pacing, observers)
+        seeded, goes_on = dataclasses.replace(spec, seed=options.seed), options.listen is not None
+        _, loop = simulated_loop(seeded, plan, pacing, observers, goes_on=goes_on)
     else:
         driver = read_driver(options.driver)
         stepping, balance = controller_of(spec.task, spec.parameters, config)

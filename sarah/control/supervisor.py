@@ -32,6 +32,8 @@ STANDING_TARGETS: Targets = (0.0,) * 6
 """Targets of a standing robot."""
 PUT_BACK = "the parameters before are back"
 """Beginning of the reason for which parameters were replaced by the last ones that worked."""
+ASKED_TO_STAND = "asked to stand"
+"""Reason for which a supervisor stops that somebody asked to."""
 PROVEN_SECONDS = 5.0
 """Time of stepping after which new parameters count as working, in s."""
 
@@ -125,7 +127,7 @@ class Supervisor:
             self.asked, self._stepped_seconds = asked, 0.0
             self._watches.forgive()
 
-    def stand(self, reason: str = "asked to stand") -> None:
+    def stand(self, reason: str = ASKED_TO_STAND) -> None:
         """Stop from the next tick on.
 
         :param reason: reason for it
@@ -284,6 +286,11 @@ class Supervisor:
     def torso_tilt(self) -> float:
         """Tilt of the torso against standing, in rad, as it was when the watches looked last."""
         return self._watches.torso_tilt
+
+    @property
+    def is_upright(self) -> bool:
+        """Whether the torso tilts by less than what is a fault."""
+        return self.torso_tilt < self._settings.largest_tilt
 
     @property
     def phase(self) -> Phase:

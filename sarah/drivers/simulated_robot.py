@@ -13,13 +13,18 @@ from sarah.control.supervisor import STANDING_TARGETS, towards
 from sarah.drivers.driver import Driver, TimedReading
 from sarah.drivers.faults import FAULTS, Fault
 from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, LoopTick, Pacing, controller_for
+from sarah.episode.ending import is_fallen
 from sarah.episode.episode import Episode
 from sarah.episode.result import EpisodeResult
+from sarah.episode.robot_settings import conditions_put_up
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
 from sarah.episode.tasks import Task
-from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Targets
+from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Targets, Vector
+
+LIES_SECONDS = 2.0
+"""Time for which a robot that goes on lies before it is put up, in s: its supervisor has noticed by then."""
 
 
 @dataclass(frozen=True)
@@ -50,6 +55,7 @@ class SimulatedRobot(Driver):
     :param plan: fault, and when it begins
     :param is_lockstep: whether time passes with the readings alone
     :param record_trace: whether to record every control tick after standing in a trace
+    :param goes_on: whether it goes on where an episode would end: after a fall it is put up, and nothing is recorded
     """
 
     def __init__(
@@ -60,6 +66,7 @@ class SimulatedRobot(Driver):
         plan: FaultPlan = NO_FAULT,
         is_lockstep: bool = True,
         record_trace: bool = False,
+        goes_on: bool = False,
     ) -> None:
         if plan.fault.delay_seconds is not None:
             randomisation = dataclasses.replace(config.randomisation, delay_seconds=plan.fault.delay_seconds)
@@ -77,6 +84,20 @@ class SimulatedRobot(Driver):
         self._change: PhaseChange | None = None
         self._heard: SensorReading | None = None
         self._began: float | None = None
+        self._goes_on, self._seed = goes_on, seed
+        self._falls = self._lay_ticks = 0
+        self._is_held_up = False
+
+    @property
+    def position(self) -> Vector:
+        """True position of the torso's centre, in m."""
+        return self.episode.robot.torso.position
+
+    @property
+    def has_fallen(self) -> bool:
+        """Whether it lies, or its simulation has diverged."""
+        robot = self.episode.robot
+        return robot.termination is not None or is_fallen(robot.torso.upright(robot.vertical))
 
     @property
     def seconds(self) -> float:
@@ -126,14 +147,41 @@ class SimulatedRobot(Driver):
 
     def _advance(self) -> None:
         """Let a control period pass."""
-        if self._ticks < self._standing_ticks:
+        if self._goes_on:
+            self._go_on()
+        elif self._ticks < self._standing_ticks:
             self.episode.robot.act(self._targets, self._change)
         else:
             self.episode.act(self._targets, self._change)
         self._ticks += 1
-        if self._ticks == self._standing_ticks:
-            self.episode.record()
-        self.ended = self.episode.termination or ""
+        if not self._goes_on:
+            if self._ticks == self._standing_ticks:
+                self.episode.record()
+            self.ended = self.episode.termination or ""
+
+    def _go_on(self) -> None:
+        """Let a control period pass. Whoever puts a robot up holds its joints at zero until its targets are."""
+        self._is_held_up = self._is_held_up and any(self._targets)
+        targets = STANDING_TARGETS if self._is_held_up else self._targets
+        if self.episode.termination is None:
+            self.episode.robot.act(targets, self._change, self._push())
+        self._lay_ticks = self._lay_ticks + 1 if self.has_fallen else 0
+        if self._lay_ticks * self._dt >= LIES_SECONDS:
+            self._put_up()
+
+    def _push(self) -> Vector | None:
+        """Force of the push now, in N, which comes once."""
+        push = self.episode.push
+        if push is None or not -self._dt / 2 <= self.seconds - push.begin < push.duration - self._dt / 2:
+            return None
+        return push.force
+
+    def _put_up(self) -> None:
+        """Put the robot where it began: it is the same, but for the noise of its sensors."""
+        task, config = self.episode.task, self.episode.config
+        self._falls, self._lay_ticks, self._is_held_up = self._falls + 1, 0, True
+        self.episode.close()
+        self.episode = Episode(config, self._seed, task, conditions=conditions_put_up(config, self._seed, self._falls))
 
     def _has_fallen_behind(self) -> bool:
         """Whether more than a period has passed by the clock since the simulated time."""
@@ -146,7 +194,7 @@ class SimulatedRobot(Driver):
     def _sensed(self) -> TimedReading | None:
         """Reading that the controller hears."""
         if self.ended or not self.episode.robot.sense():
-            self.ended = self.episode.termination or ""
+            self.ended = "" if self._goes_on else self.episode.termination or ""
             return None
         reading, since = self.episode.robot.last_reading, self._ticks - self._first_wrong
         if self._heard is None or since < 0:
@@ -162,6 +210,7 @@ def simulated_loop(
     pacing: Pacing | None = None,
     observers: Sequence[LoopObserver] = (),
     record_trace: bool = False,
+    goes_on: bool = False,
 ) -> tuple[SimulatedRobot, ControlLoop]:
     """Make the control loop of an episode's robot. In lockstep it has the bytes of the episode as it is simulated.
 
@@ -170,9 +219,10 @@ def simulated_loop(
     :param pacing: what waits for the next tick; by default ticks follow each other in lockstep
     :param observers: functions that are called in each tick
     :param record_trace: whether to record every control tick after standing in a trace
+    :param goes_on: whether the robot goes on where an episode would end
     :return: the robot, and its loop
     """
-    robot = SimulatedRobot(spec.config, spec.seed, spec.task, plan, pacing is None, record_trace)
+    robot = SimulatedRobot(spec.config, spec.seed, spec.task, plan, pacing is None, record_trace, goes_on)
     stepping, balance = controller_of(spec.task, spec.parameters, spec.config)
     loop = ControlLoop(
         robot,

@@ -12,6 +12,7 @@ import numpy as np
 from sarah.envs.sarah_env import checked_action, checked_render_mode, draw_seed
 from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError, check_range, shortened
+from sarah.operation.operated_robot import OperatedRobot
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import (
     BOX,
@@ -50,7 +51,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         config: OperationConfig | None = None,
         first: Sequence[float] = SHIPPED,
         reach: float = 0.25,
-        operated: RobotInOperation | None = None,
+        operated: OperatedRobot | None = None,
         render_mode: str | None = None,
         **settings: Any,
     ) -> None:
@@ -68,7 +69,7 @@ class SarahOperationEnv(gymnasium.Env[np.ndarray, np.ndarray]):
         self.observation_space = gymnasium.spaces.Box(-LARGEST, LARGEST, (size,), np.float32)
         self.action_space = gymnasium.spaces.Box(-1.0, 1.0, (len(PARAMETERS),), np.float32)
         self._given = operated
-        self._robot: RobotInOperation | None = None
+        self._robot: OperatedRobot | None = None
         self._last: Window | None = None
         self._is_done = False
 

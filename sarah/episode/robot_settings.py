@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import random
 from collections.abc import Mapping
 from dataclasses import dataclass, field, fields, is_dataclass, replace
 from typing import Annotated, Any, TypeVar
@@ -154,3 +155,15 @@ def conditions_of(config: RobotSettings, seed: int) -> Conditions:
     torso = all_dimensions(config.dimensions)["torso_mass"]
     loaded = drawn.mass_factors["torso"] + config.payload / torso
     return replace(drawn, ground=ground, mass_factors={**drawn.mass_factors, "torso": loaded})
+
+
+def conditions_put_up(config: RobotSettings, seed: int, times: int) -> Conditions:
+    """Draw robot and world of one that is put up again and again: only the noise of its sensors is new each time.
+
+    :param config: settings of robot and world
+    :param seed: seed of both
+    :param times: number of times that it was put up before
+    """
+    conditions = conditions_of(config, seed)
+    noise = random.Random(f"noise {seed} {times}").getrandbits(64)
+    return replace(conditions, sensors=replace(conditions.sensors, seed=noise))

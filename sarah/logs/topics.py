@@ -95,7 +95,8 @@ def _window(seconds: float, window: Mapping[str, Any]) -> Values:
     parameters = zip((one.name for one in PARAMETERS), window.get("parameters", ()), strict=False)
     felt = zip((f"felt_{name}" for name in FELT), window.get("felt", ()), strict=False)
     times = {"begin": window.get("begin"), "duration": window.get("seconds")}
-    others = {name: window[name] for name in ("index", "changes", "observed_reward", "score", "fell") if name in window}
+    names = ("index", "changes", "observed_reward", "score", "fell")
+    others = {name: window[name] for name in names if window.get(name) is not None}
     return {"seconds": seconds, **times, "fell": False, **others, **dict(parameters), **dict(felt)}
 
 

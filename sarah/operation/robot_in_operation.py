@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
-import random
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -13,10 +11,12 @@ from sarah.episode.ending import is_fallen
 from sarah.episode.push import Push, draw_push
 from sarah.episode.recording import Recording
 from sarah.episode.result import EpisodeResult
-from sarah.episode.robot_settings import conditions_of
+from sarah.episode.robot_settings import conditions_put_up
 from sarah.episode.running_robot import Observer, RunningRobot
+from sarah.operation.operated_robot import OperatedRobot
 from sarah.operation.settings import BOX, OperationConfig, Parameters, controller_parameters
-from sarah.operation.window import Window, WindowRecord
+from sarah.operation.window import Window
+from sarah.operation.window_record import WindowRecord
 from sarah.recorded.journal import Journal
 from sarah.robot.reading import Vector
 
@@ -24,8 +24,8 @@ MOST_PUSHES = 2**20
 """Number of pushes of an operation after which those of the next seed would come."""
 
 
-class RobotInOperation:
-    """A robot whose parameters may change between windows. What it does follows from settings, seed and parameters.
+class RobotInOperation(OperatedRobot):
+    """A simulated robot in operation. What it does follows from settings, seed and parameters.
 
     It is the same robot all the time: its masses, friction and sensor errors are drawn once. Its sensor noise is new
     each time that it is put up.
@@ -45,16 +45,9 @@ class RobotInOperation:
         journal: Journal | None = None,
         observers: Sequence[Observer] = (),
     ) -> None:
-        self.config = config
-        self.seconds = 0.0
-        """Time of operation so far, in s."""
-        self.windows = 0
-        """Number of windows so far."""
+        super().__init__(config, watch, journal)
         self._seed = seed
-        self._watch = watch
-        self._journal = journal
         self._observers = tuple(observers)
-        self._stages_over = 0
         self._robot: RunningRobot | None = None
         self._changes = 0
         self._stands = 0
@@ -63,44 +56,6 @@ class RobotInOperation:
     def __getstate__(self) -> dict[str, Any]:
         """State of a copy, whose robot runs the windows since it stood up again before its next one, unobserved."""
         return {**vars(self), "_robot": None, "_since_standing": list(self._since_standing), "_observers": ()}
-
-    @property
-    def is_over(self) -> bool:
-        """Whether the operation's time is over."""
-        return self.config.stages_over(self.seconds) == len(self.config.stages)
-
-    @property
-    def windows_left(self) -> float:
-        """Number of windows that the time of the present stage is enough for if the robot does not fall."""
-        stages = self.config.stages
-        minutes = stages[min(self.config.stages_over(self.seconds), len(stages) - 1)]
-        seconds = self.config.settle_seconds + self.config.measure_seconds
-        return max(0.0, 60.0 * minutes - self.seconds) / seconds
-
-    def run(self, parameters: Parameters) -> Window:
-        """Run one window, from where the robot is now.
-
-        :param parameters: P1 to P5 and V1 to V4
-        :raises ConfigurationError: if a parameter is not within its box
-        :raises ResumeError: if the window that the journal knows had others
-        """
-        window = self._run_next(parameters)[0] if self._journal is None else self._recorded(self._journal, parameters)
-        if self._watch is not None:
-            self._watch(window)
-        return window
-
-    def _recorded(self, journal: Journal, parameters: Parameters) -> Window:
-        while self._stages_over < self.config.stages_over(self.seconds):
-            journal.extend(self.windows + self._stages_over, self.config.stages[self._stages_over + 1])
-            self._stages_over += 1
-        request = {"index": self.windows + self._stages_over, "parameters": list(parameters)}
-        window = journal.known(request, Window.of_plain)
-        if window is not None:
-            self.skip(window)
-            return window
-        window = self._run_next(parameters)[0]
-        journal.add(request, window.plain())
-        return window
 
     def replay(self, window: Window) -> EpisodeResult:
         """Run one window again that is known, and record it.
@@ -140,21 +95,21 @@ class RobotInOperation:
         self._since_standing = []
 
     def _count(self, window: Window) -> None:
-        self.windows += 1
-        self.seconds = window.end
+        super()._count(window)
         self._since_standing.append(window)
         if window.fell:
             self._put_up()
 
     def _standing(self) -> RunningRobot:
         config = self.config.robot_after(self._changes)
-        conditions = conditions_of(config, self._seed)
-        noise = random.Random(f"noise {self._seed} {self._stands}").getrandbits(64)
-        conditions = dataclasses.replace(conditions, sensors=dataclasses.replace(conditions.sensors, seed=noise))
+        conditions = conditions_put_up(config, self._seed, self._stands)
         robot = RunningRobot(config, self._seed, conditions=conditions)
         robot.observers = () if self._since_standing else self._observers
         robot.stand()
         return robot
+
+    def _measured(self, parameters: Parameters) -> Window:
+        return self._run_next(parameters)[0]
 
     def _run_next(self, parameters: Parameters, record: bool = False) -> tuple[Window, EpisodeResult | None]:
         parameters = BOX.checked(parameters)
@@ -183,7 +138,7 @@ class RobotInOperation:
         stood = STAND_SECONDS if stands else 0.0
         first = round((begin + stood) / dt)
         record = WindowRecord(robot, config, settle, measure)
-        recording = Recording(robot, first * dt, record.true) if record_trace else None
+        recording = Recording(robot, first * dt, record.true.returned) if record_trace else None
         robot.observers = (record, *(() if recording is None else recording.observers), *observers)
         robot.generator.set_parameters(*controller_parameters(parameters))
         if isinstance(robot.generator, Supervisor):  # if it has stopped, each window asks it to step again
@@ -192,7 +147,7 @@ class RobotInOperation:
         while ticks < settle + measure and robot.termination is None:
             robot.tick(self._force(config.push, first + ticks, dt))
             if robot.termination is None:
-                record.judge(robot.torso)
+                record.judge(robot.torso.position)
                 if robot.generator.has_fallen or is_fallen(robot.torso.upright(robot.vertical)):
                     robot.termination = "fell"
             ticks += 1
@@ -203,10 +158,10 @@ class RobotInOperation:
             seconds=round(stood + ticks * dt + (self.config.fall_seconds if fell else 0.0), 9),
             changes=self._changes,
             parameters=parameters,
-            score=record.true.score,
-            observed_reward=record.observed.score,
+            score=record.true.returned.score,
+            observed_reward=record.own.observed.score,
             fell=fell,
-            felt=record.felt(),
+            felt=record.own.felt(),
         )
         termination = robot.termination or "time_limit"
         return window, None if recording is None else recording.result(robot, termination)

@@ -29,6 +29,8 @@ SHIPPED: Parameters = (
 )
 """P1 to P5 and V1 to V4 that the package ships."""
 Minutes = Annotated[float, Within(0.1, 600.0, "min")]
+SettleSeconds = Annotated[float, Within(0.0, 60.0, "s")]
+MeasureSeconds = Annotated[float, Within(0.5, 600.0, "s")]
 WITHOUT_EFFECT = ("time_limit", "reward_form", "push.at_seconds")
 """Settings of an episode that an operation does not know."""
 SOFT_PUSHES = Push(newtons=(0.0, 50.0))
@@ -74,8 +76,8 @@ class OperationConfig:
 
     robot: PushedConfig = field(default_factory=lambda: PushedConfig(push=SOFT_PUSHES))
     minutes: Minutes = 10.0
-    settle_seconds: Annotated[float, Within(0.0, 60.0, "s")] = 2.0
-    measure_seconds: Annotated[float, Within(0.5, 600.0, "s")] = 4.0
+    settle_seconds: SettleSeconds = 2.0
+    measure_seconds: MeasureSeconds = 4.0
     fall_seconds: Annotated[float, Within(0.0, 3600.0, "s")] = 20.0
     push_seconds: Annotated[float, Within(0.5, 3600.0, "s")] = 4.0
     changes: tuple[Change, ...] = ()

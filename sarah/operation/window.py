@@ -5,21 +5,13 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 from typing import Any
 
 import numpy as np
 
-from sarah.control.pattern_generator import Phase, PhaseChange
-from sarah.episode.gait import GaitRecord
-from sarah.episode.recording import Return
-from sarah.episode.reward import RewardSettings, highest_return, reward_rate
-from sarah.episode.running_robot import Observer, RunningRobot
-from sarah.operation.odometry import LegOdometry
 from sarah.operation.settings import Parameters
-from sarah.robot.reading import GRAVITY, Vector
+from sarah.robot.reading import GRAVITY
 from sarah.robot.scale import Scale
-from sarah.simulation.simulator import TorsoState
 
 FELT = (
     *(f"{signal}_{what}" for what in ("mean", "deviation") for signal in ("a_x", "a_y", "a_z", "w_x", "w_y", "w_z")),
@@ -48,7 +40,8 @@ class Window:
     :param seconds: time that it took, in s, with standing before it and putting up after it
     :param changes: number of changes that had been made to robot and world
     :param parameters: P1 to P5 and V1 to V4
-    :param score: equation 2 over its ceiling, by the torso's true motion since the measurement began; 1 is the best
+    :param score: equation 2 over its ceiling, by the torso's true motion since the measurement began; 1 is the best.
+        ``None`` where nobody knows that motion, as of a real robot
     :param observed_reward: the same, as far as the robot's own sensors tell
     :param fell: whether the robot fell, which ended the window
     :param felt: what the robot felt, in the order of :data:`FELT`
@@ -59,10 +52,15 @@ class Window:
     seconds: float
     changes: int
     parameters: Parameters
-    score: float
+    score: float | None
     observed_reward: float
     fell: bool
     felt: tuple[float, ...]
+
+    @property
+    def worth(self) -> float:
+        """Score; where nobody knows it, the observed reward."""
+        return self.observed_reward if self.score is None else self.score
 
     @property
     def end(self) -> float:
@@ -82,90 +80,6 @@ class Window:
         """
         window = cls(**plain)
         return dataclasses.replace(window, parameters=tuple(window.parameters), felt=tuple(window.felt))
-
-
-class WindowRecord(Observer):
-    """Observer of one window: what the robot feels, and what it is worth.
-
-    :param robot: robot that runs
-    :param config: settings of the robot, with those of the reward; its form is always the symmetric one
-    :param settle: ticks that are not measured
-    :param measure: ticks that are
-    """
-
-    def __init__(self, robot: RunningRobot, config: RewardSettings, settle: int, measure: int) -> None:
-        height = robot.description.standing_height
-        self._dt = config.physics.control_dt
-        self._settle, self._measure = settle, measure
-        ceiling = highest_return(height, measure * self._dt, config)
-        self.true, self.observed = Return(ceiling), Return(ceiling)
-        """Equation 2 by the torso's motion since the measurement began, and with the displacement that the legs tell
-        and the height of standing."""
-        self._height = height
-        self._reward_rate = partial(reward_rate, config=dataclasses.replace(config, reward_form="symmetric"))
-        self._gait = GaitRecord(config.physics.control_rate, config.scale.time)
-        self._odometry = LegOdometry(height, self._dt)
-        self._ticks = 0
-        self._first: TorsoState | None = None
-        self._from = (0.0, 0.0)
-        self._readings: list[tuple[float, ...]] = []
-        self._lags: list[list[float]] = []
-        self._phases: dict[Phase, list[int]] = {Phase.SHIFT: [], Phase.LIFT: [], Phase.LAND: []}
-        self._phase_began = 0
-
-    def sensed(self, robot: RunningRobot) -> None:
-        """Record what the robot feels, and how far its joints are from their targets."""
-        reading = robot.last_reading
-        self._odometry.tick(reading)
-        if self._ticks >= self._settle:
-            left_fore, left_hind, right_fore, right_hind = reading.pressures
-            loads = (left_fore + left_hind, right_fore + right_hind)
-            self._readings.append((*reading.acceleration, *reading.angular_rate, *loads))
-            targets = robot.generator.targets
-            self._lags.append([abs(target - joint) for target, joint in zip(targets, reading.joints, strict=True)])
-
-    def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
-        """Record the end of a phase."""
-        if change is not None:
-            self._gait.phase_change(self._ticks, change)
-            if change.ended in self._phases and self._ticks >= self._settle:
-                self._phases[change.ended].append(self._ticks - self._phase_began)
-            self._phase_began = self._ticks
-
-    def judge(self, torso: TorsoState) -> None:
-        """Add the reward at the end of a tick: by the true state, and by what the sensors tell.
-
-        :param torso: true state of the torso
-        """
-        self._ticks += 1
-        if self._ticks <= self._settle:
-            return
-        if self._first is None:
-            self._first, self._from = torso, (self._odometry.x, self._odometry.y)
-        frequency = self._gait.steps_per_second(self._ticks)
-        (x, y, z), (first_x, first_y, _) = torso.position, self._first.position
-        self.true.value += self._reward_rate(x - first_x, y - first_y, z, frequency) * self._dt
-        odometry, (from_x, from_y) = self._odometry, self._from
-        self.observed.value += (
-            self._reward_rate(odometry.x - from_x, odometry.y - from_y, self._height, frequency) * self._dt
-        )
-
-    def felt(self) -> tuple[float, ...]:
-        """What the robot felt, in the order of :data:`FELT`; a phase that never ended lasted as long as the window."""
-        if not self._readings:
-            return (0.0,) * len(FELT)
-        signals = np.array(self._readings)
-        lags = np.array(self._lags).mean(axis=0).reshape(3, 2).mean(axis=1)
-        seconds = [self._dt * (sum(ticks) / len(ticks) if ticks else self._measure) for ticks in self._phases.values()]
-        values = (
-            *signals[:, :6].mean(axis=0),
-            *signals[:, :6].std(axis=0),
-            *seconds,
-            *lags,
-            *signals[:, 6:].mean(axis=0),
-            self._gait.steps_per_second(self._ticks),
-        )
-        return tuple(round(float(value), 12) for value in values)
 
 
 def observation_from(felt: Sequence[float], scale: Scale) -> np.ndarray:

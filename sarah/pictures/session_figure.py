@@ -28,6 +28,8 @@ def draw_session(
 ) -> list[Path]:
     """Draw every window as a point, their running mean as a line, falls as crosses and changes as numbered lines.
 
+    Of a robot without true scores, it is the rewards that the robot itself observed.
+
     :param windows: windows of the session, at least one
     :param changes: what was to change in its course; what no window began after is not drawn
     :param path: path of the picture, without suffix
@@ -35,18 +37,19 @@ def draw_session(
     :return: the files, PNG and PDF
     """
     minutes = [window.end / 60.0 for window in windows]
-    scores = [window.score for window in windows]
+    scores, has_scores = [window.worth for window in windows], all(window.score is not None for window in windows)
     falls = [index for index, window in enumerate(windows) if window.fell]
     with own_style():
         figure, axis = plt.subplots(figsize=(2 * COLUMN_WIDTH, COLUMN_WIDTH), layout="constrained")
         axis.plot(minutes, scores, ".", color=SCORE, markersize=3, alpha=0.5, label="window")
-        observed = [window.observed_reward for window in windows]
-        axis.plot(
-            minutes, _running_mean(observed), color=OBSERVED, linewidth=0.8, label="what the robot itself observes"
-        )
+        if has_scores:
+            observed = [window.observed_reward for window in windows]
+            axis.plot(
+                minutes, _running_mean(observed), color=OBSERVED, linewidth=0.8, label="what the robot itself observes"
+            )
         axis.plot(minutes, _running_mean(scores), color=SCORE, linewidth=1.5, label=f"mean of {SMOOTHED} windows")
         if frozen:
-            ends, means = [window.end / 60.0 for window in frozen], _running_mean([window.score for window in frozen])
+            ends, means = [window.end / 60.0 for window in frozen], _running_mean([window.worth for window in frozen])
             axis.plot(ends, means, color=FROZEN, label=f"mean of {SMOOTHED} without learning")
         axis.plot([minutes[i] for i in falls], [scores[i] for i in falls], "x", color=FALL, label="fall")
         made = changes[: windows[-1].changes]
@@ -59,7 +62,9 @@ def draw_session(
         lines = lines[:MOST_LINES] + ["…"] * (len(lines) > MOST_LINES)
         if lines:
             axis.set_title("\n".join(lines), loc="left", fontsize=6, pad=9)
-        axis.set(xlabel="time of operation (min)", ylabel="score", ylim=(0.0, 1.02))
+        axis.set(
+            xlabel="time of operation (min)", ylabel="score" if has_scores else "observed reward", ylim=(0.0, 1.02)
+        )
         axis.legend(loc="lower right", ncols=2)
         return save(figure, path)
 

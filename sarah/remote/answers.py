@@ -1,4 +1,4 @@
-"""What a robot answers, and its telemetry, as JSON."""
+"""What a robot answers, its windows and its telemetry, as JSON."""
 
 from __future__ import annotations
 
@@ -9,6 +9,8 @@ from enum import Enum
 from typing import Any, TypeVar
 
 from sarah.errors import RobotError
+from sarah.number import is_number
+from sarah.operation.window import FELT
 from sarah.remote.requests import SCHEMA
 
 
@@ -29,6 +31,10 @@ class Outcome(str, Enum):
     """The robot does not do it."""
     ENDED = "ended"
     """The robot's program ended."""
+    WAITING = "waiting"
+    """The robot cannot do it now, and will when it can."""
+    BUSY = "busy"
+    """A learner operates the robot."""
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,66 @@ class Answer:
     seconds: float | None = None
     state: str = ""
     phase: str = ""
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What a robot measured in a window: the last answer to a request for one.
+
+    :param observed_reward: equation 2 over its ceiling, as far as the robot's own sensors tell; what a fall or the
+        supervisor cut off counts as nothing
+    :param score: the same by the torso's true motion; ``None`` where nobody knows it
+    :param fell: whether the robot fell, which ended the window
+    :param felt: what the robot felt, in the order of :data:`~sarah.operation.window.FELT`
+    :param seconds: time from the request to the end of the window, in s
+    :param began: time since the robot began at which the parameters were applied, in s
+    :param tick: number of that control tick, from 0
+    :param ticks: number of ticks of the window
+    :param reason: what the supervisor did in the window; empty if it did nothing
+    """
+
+    observed_reward: float
+    score: float | None
+    fell: bool
+    felt: Sequence[float]
+    seconds: float
+    began: float
+    tick: int
+    ticks: int
+    reason: str = ""
+
+    def __post_init__(self) -> None:
+        """Refuse what is no number.
+
+        :raises ValueError: if something is not
+        """
+        numbers = [self.observed_reward, self.seconds, self.began, self.tick, self.ticks, *self.felt]
+        if not all(map(is_number, [*numbers, *([] if self.score is None else [self.score])])):
+            raise ValueError
+        if len(self.felt) != len(FELT) or not isinstance(self.fell, bool) or self.seconds <= 0.0:
+            raise ValueError
+
+
+@dataclass(frozen=True)
+class Identity:
+    """What robot it is.
+
+    :param robot: its driver, or how it is simulated, in words
+    :param host: computer on which its program runs
+    :param process: name of this run of the program, which no other has
+    :param version: version of this package there
+    :param is_lockstep: whether it waits for a learner between windows
+    :param has_score: whether it knows its true score
+    :param settings: settings of the robot, by name
+    """
+
+    robot: str
+    host: str
+    process: str
+    version: str
+    is_lockstep: bool
+    has_score: bool
+    settings: Mapping[str, Any]
 
 
 @dataclass(frozen=True)
@@ -84,18 +150,20 @@ class Telemetry:
     reading: Mapping[str, Sequence[float]] | None
 
 
-Message = TypeVar("Message", Answer, Telemetry)
+Message = Answer | Measured | Identity | Telemetry
+"""What a robot sends."""
+Kind = TypeVar("Kind", Answer, Measured, Identity, Telemetry)
 
 
-def to_json(message: Answer | Telemetry) -> bytes:
+def to_json(message: Message) -> bytes:
     """A message as JSON.
 
-    :param message: answer or telemetry
+    :param message: message of a robot
     """
     return json.dumps({"schema": SCHEMA, **asdict(message)}).encode()
 
 
-def from_json(kind: type[Message], text: bytes) -> Message:
+def from_json(kind: type[Kind], text: bytes) -> Kind:
     """Read a message of a robot.
 
     :param kind: its kind

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from sarah.errors import RobotError
-from sarah.remote.answers import Answer, Telemetry, from_json
+from sarah.remote.answers import Answer, Identity, Kind, Measured, Telemetry, from_json
 from sarah.remote.endpoints import REQUESTS, TELEMETRY, Endpoint
 from sarah.remote.requests import Request
 
@@ -36,6 +36,10 @@ class Client:
 
     def __exit__(self, *error: object) -> None:
         """Close the connection."""
+        self.close()
+
+    def close(self) -> None:
+        """Close the connection."""
         self._session.close()
 
     def ask(self, request: Request, seconds: float = WAIT_SECONDS) -> Iterator[Answer]:
@@ -46,12 +50,25 @@ class Client:
         :return: answers as they come; the last one is final
         :raises RobotError: if it does not come
         """
-        for reply in self._replies(request, seconds):
-            answer = from_json(Answer, reply)
-            yield answer
-            if answer.is_final:
-                return
-        raise RobotError(f"the robot at {self._endpoint.address} has gone before its last answer")
+        return self._answers(Answer, request, seconds)
+
+    def window(self, request: Request, seconds: float) -> Iterator[Answer | Measured]:
+        """Ask the robot for a window, and wait for it.
+
+        :param request: request for a window
+        :param seconds: time to wait for it, in s
+        :return: answers as they come; the last one is the window, or is final
+        :raises RobotError: if it does not come
+        """
+        return self._answers(Measured, request, seconds)
+
+    def identity(self, seconds: float = WAIT_SECONDS) -> Identity:
+        """Ask what robot it is.
+
+        :param seconds: time to wait, in s
+        :raises RobotError: if it does not say so
+        """
+        return self._told(Identity, Request("identity"), seconds)
 
     def state(self, seconds: float = WAIT_SECONDS) -> Telemetry:
         """Ask what the robot does.
@@ -59,11 +76,7 @@ class Client:
         :param seconds: time to wait, in s
         :raises RobotError: if no answer comes
         """
-        for reply in self._replies(Request("state"), seconds):
-            if b'"outcome"' in reply:
-                raise RobotError(from_json(Answer, reply).reason)
-            return from_json(Telemetry, reply)
-        raise RobotError(f"the robot at {self._endpoint.address} has gone")
+        return self._told(Telemetry, Request("state"), seconds)
 
     def telemetry(self, seconds: float = SILENT_SECONDS) -> Iterator[Telemetry]:
         """What the robot does, twenty times a second; whoever is slow misses some.
@@ -88,6 +101,24 @@ class Client:
                     time.sleep(PAUSE_SECONDS / 5)
         finally:
             subscriber.undeclare()
+
+    def _answers(self, kind: type[Kind], request: Request, seconds: float) -> Iterator[Answer | Kind]:
+        """Answers up to the final one, or to a message of the kind that was asked for."""
+        for reply in self._replies(request, seconds):
+            answer = _answer_or(kind, reply)
+            yield answer
+            if not isinstance(answer, Answer) or answer.is_final:
+                return
+        raise RobotError(f"the robot at {self._endpoint.address} has gone before its last answer")
+
+    def _told(self, kind: type[Kind], request: Request, seconds: float) -> Kind:
+        """What the robot says, and nothing more."""
+        for reply in self._replies(request, seconds):
+            answer = _answer_or(kind, reply)
+            if isinstance(answer, Answer):
+                raise RobotError(answer.reason)
+            return answer
+        raise RobotError(f"the robot at {self._endpoint.address} has gone")
 
     def _replies(self, request: Request, seconds: float) -> Iterator[bytes]:
         """What the robot answers to a request, which is sent again if it was dropped unread."""
@@ -117,3 +148,8 @@ class Client:
             if reply.ok is None:
                 raise RobotError(f"no answer from {self._endpoint.address} within {seconds:g} s")
             yield reply.ok.payload.to_bytes()
+
+
+def _answer_or(kind: type[Kind], reply: bytes) -> Answer | Kind:
+    """A reply, which is of some kind or an answer."""
+    return from_json(Answer, reply) if b'"outcome"' in reply else from_json(kind, reply)

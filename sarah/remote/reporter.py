@@ -11,7 +11,7 @@ from sarah.drivers.loop import LoopTick
 from sarah.drivers.real_time import LATE_SECONDS
 from sarah.operation.settings import PARAMETERS
 from sarah.remote.answers import Telemetry
-from sarah.remote.slot import present
+from sarah.remote.moment import present
 from sarah.robot.reading import SensorReading
 
 RATE = 20.0

@@ -16,13 +16,19 @@ from sarah.control.parameters import Box, Parameters
 from sarah.episode.from_mapping import from_mapping
 from sarah.episode.robot_settings import RobotSettings
 from sarah.errors import ConfigurationError, check_whole, shortened, unknown_name
-from sarah.operation.settings import PARAMETERS
+from sarah.operation.settings import PARAMETERS, MeasureSeconds, SettleSeconds
+from sarah.ranges import check_ranges
 from sarah.robot.dimensions import all_dimensions, check_dimensions
 
 SCHEMA = 1
 """Version of the requests, answers and telemetry."""
-KINDS = ("push", "stand", "step", "state")
-"""What a robot can be asked: to take parameters, to stand, to step, and what it does."""
+KINDS = ("push", "stand", "step", "state", "window", "identity")
+"""What a robot can be asked: to take parameters, to stand, to step, what it does, to take parameters and measure a
+window with them, and what robot it is."""
+WITH_VALUES = ("push", "window")
+"""Requests that have parameters."""
+LONGEST_LEARNER = 64
+"""Length of a learner's name, in characters."""
 LARGEST_BYTES = 8192
 """Length of a message in bytes beyond which nobody reads it."""
 LARGEST_CHANGE = 0.9
@@ -68,17 +74,37 @@ class LearnedWith:
 
 
 @dataclass(frozen=True)
+class WindowTimes:
+    """Times of a window.
+
+    :param settle_seconds: time that new parameters are given to settle, in s
+    :param measure_seconds: time that is measured, in s
+    """
+
+    settle_seconds: SettleSeconds = 2.0
+    measure_seconds: MeasureSeconds = 4.0
+
+    def __post_init__(self) -> None:
+        """Refuse times outside their ranges."""
+        check_ranges("window.", self)
+
+
+@dataclass(frozen=True)
 class Request:
     """What a robot is asked.
 
     :param kind: one of :data:`KINDS`
     :param values: new parameters by name, from P1 to P5 and V1 to V4; those that are not named stay
     :param learned_with: controller and robot that they were learned with, if that is known
+    :param window: times of a window
+    :param learner: name of the learner that asks for a window, or that leaves the robot with parameters
     """
 
     kind: str
     values: Mapping[str, float] = field(default_factory=dict)
     learned_with: LearnedWith | None = None
+    window: WindowTimes | None = None
+    learner: str = ""
 
     def __post_init__(self) -> None:
         """Refuse unknown kinds and names, and values outside their ranges."""
@@ -87,8 +113,12 @@ class Request:
         for name in self.values:
             if name not in BY_NAME:
                 raise ConfigurationError(unknown_name("parameter", name, BY_NAME))
-        if bool(self.values) != (self.kind == "push"):
+        if bool(self.values) != (self.kind in WITH_VALUES):
             raise ConfigurationError(f"a request to {self.kind} has {'no' if self.values else 'to have'} values")
+        if (self.window is not None) != (self.kind == "window"):
+            raise ConfigurationError(f"the key window is for requests of kind window, which have it, not {self.kind}")
+        if len(self.learner) > LONGEST_LEARNER or (self.kind == "window" and not self.learner):
+            raise ConfigurationError(f"learner must be a name of 1 to {LONGEST_LEARNER} characters")
         checked = Box(tuple(BY_NAME[name] for name in self.values)).checked(list(self.values.values()))
         object.__setattr__(self, "values", dict(zip(self.values, checked, strict=True)))
 
@@ -99,6 +129,10 @@ class Request:
             content["values"] = dict(self.values)
         if self.learned_with is not None:
             content["learned_with"] = asdict(self.learned_with)
+        if self.window is not None:
+            content["window"] = asdict(self.window)
+        if self.learner:
+            content["learner"] = self.learner
         return json.dumps(content).encode()
 
 
@@ -111,7 +145,7 @@ def read_request(message: bytes) -> Request:
     content = _read_json(message)
     if not isinstance(content, dict):
         raise ConfigurationError(f"a request must be a JSON object, not {shortened(content)}")
-    _check_keys(content, "schema", "kind", "values", "learned_with")
+    _check_keys(content, "schema", "kind", "values", "learned_with", "window", "learner")
     version, kind = content.get("schema"), content.get("kind")
     if type(version) is not int or version != SCHEMA:
         raise ConfigurationError(f"schema must be {SCHEMA}, not {shortened(version)}")
@@ -120,7 +154,18 @@ def read_request(message: bytes) -> Request:
     values = content.get("values", {})
     if not isinstance(values, dict):
         raise ConfigurationError(f"values must hold names and numbers, not {shortened(values)}")
-    return Request(kind, values, _read_learned_with(content["learned_with"]) if "learned_with" in content else None)
+    learner = content.get("learner", "")
+    if not isinstance(learner, str) or ("learner" in content and not learner):
+        raise ConfigurationError(
+            f"learner must be a name of 1 to {LONGEST_LEARNER} characters, not {shortened(learner)}"
+        )
+    return Request(
+        kind,
+        values,
+        _read_learned_with(content["learned_with"]) if "learned_with" in content else None,
+        from_mapping(WindowTimes(), content["window"], "window.") if "window" in content else None,
+        learner,
+    )
 
 
 def _read_json(message: bytes) -> Any:

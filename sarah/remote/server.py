@@ -1,7 +1,7 @@
 """The robot's side: requests come in, answers and telemetry go out, and the control loop never waits for either.
 
 Zenoh keeps the newest requests in a ring. A thread of the server's takes them out, reads and checks them, and hands
-them over; it also sends what the loop has to say. Loop and thread share two queues only.
+them over; it also sends what the loop has to say. Loop and thread share three queues only.
 """
 
 from __future__ import annotations
@@ -17,10 +17,10 @@ from typing import Any
 from sarah.control.supervisor import Supervisor
 from sarah.drivers.loop import LoopTick
 from sarah.errors import ConfigurationError, SarahError
-from sarah.remote.answers import Answer, Outcome, Telemetry, to_json
+from sarah.remote.answers import Answer, Identity, Message, Outcome, Telemetry, to_json
 from sarah.remote.endpoints import REQUESTS, TELEMETRY, Endpoint
-from sarah.remote.reporter import Reporter
-from sarah.remote.requests import LARGEST_BYTES, LARGEST_CHANGE, LearnedWith, Request, read_request
+from sarah.remote.reporter import RATE, Reporter
+from sarah.remote.requests import LARGEST_BYTES, LearnedWith, Request, read_request
 from sarah.remote.slot import Asked, Slot
 
 RING = 64
@@ -34,18 +34,29 @@ MOST_LEAVING = 256
 class Server:
     """Observer of a control loop that lets others ask the robot for something. It has to be closed.
 
+    In lockstep it holds the loop up while the robot has nothing to do: a simulated robot then waits for its learner.
+
     :param endpoint: where it listens
     :param robot: controller and robot that parameters must have been learned with
-    :param dt: control period, in s
-    :param largest_change: largest change of a parameter, as a share of its range
+    :param slot: slot for the parameters
+    :param identity: what robot it is; without it nobody is told
+    :param in_lockstep: function that says whether the loop is held up while there is nothing to do
     :raises RobotError: if it cannot listen there
     """
 
     def __init__(
-        self, endpoint: Endpoint, robot: LearnedWith, dt: float, largest_change: float = LARGEST_CHANGE
+        self,
+        endpoint: Endpoint,
+        robot: LearnedWith,
+        slot: Slot,
+        identity: Identity | None = None,
+        in_lockstep: Callable[[], bool] = lambda: False,
     ) -> None:
-        self._slot, self._reporter, self._robot = Slot(dt, largest_change), Reporter(), robot
+        self._slot, self._reporter, self._robot = slot, Reporter(), robot
+        self._identity, self._in_lockstep = identity, in_lockstep
         self._arrived: deque[Asked] = deque()
+        self._readers: deque[Asked] = deque()
+        self._has_arrived = threading.Event()
         self._leaving: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._is_closed = False
         self._session = endpoint.opened(listens=True)
@@ -70,13 +81,20 @@ class Server:
         """
         supervisor = tick.controller
         assert isinstance(supervisor, Supervisor), "a robot that listens has a supervisor"
-        arrived = [self._arrived.popleft() for _ in range(len(self._arrived))]
-        self._slot.tick(tick, supervisor, [asked for asked in arrived if asked.request.kind != "state"])
-        is_due = self._reporter.tick(tick, supervisor) and self._leaving.qsize() < MOST_LEAVING
-        readers = [asked for asked in arrived if asked.request.kind == "state"]
-        if is_due or readers:
+        is_due = self._reporter.tick(tick, supervisor)
+        while self._slot.is_idle and not self._arrived and self._in_lockstep():
+            self._tell(tick, supervisor, is_due=True)
+            self._has_arrived.wait(1.0 / RATE)
+            self._has_arrived.clear()
+        self._slot.tick(tick, supervisor, _emptied(self._arrived))
+        self._tell(tick, supervisor, is_due)
+
+    def _tell(self, tick: LoopTick, supervisor: Supervisor, is_due: bool) -> None:
+        """Say what the robot does, to those that asked and, if it is due, to everybody."""
+        is_due = is_due and self._leaving.qsize() < MOST_LEAVING
+        if is_due or self._readers:
             telemetry = self._reporter.telemetry(tick, supervisor)
-            for asked in readers:
+            for asked in _emptied(self._readers):
                 asked.reply(telemetry)
             if is_due:
                 self._leaving.put(lambda: self._publish(telemetry))
@@ -89,7 +107,7 @@ class Server:
         self._is_closed = True
         self.thread.join()  # from here on nothing arrives
         self._slot.close(reason)
-        for asked in self._arrived:
+        for asked in (*self._arrived, *self._readers):
             asked.reply(Answer(Outcome.ENDED, reason))
         self._send(time.monotonic())
         self._session.close()
@@ -113,8 +131,13 @@ class Server:
             request = self._checked(query.payload)
         except SarahError as error:
             _reply(query, Answer(Outcome.REFUSED, " ".join(str(error).split())))
-        else:
-            self._arrived.append(Asked(request, lambda message: self._leaving.put(lambda: _reply(query, message))))
+            return
+        if request.kind == "identity":
+            _reply(query, self._identity or Answer(Outcome.REFUSED, "this robot does not say what it is"))
+            return
+        came = self._readers if request.kind == "state" else self._arrived
+        came.append(Asked(request, lambda message: self._leaving.put(lambda: _reply(query, message))))
+        self._has_arrived.set()
 
     def _checked(self, payload: Any) -> Request:
         """Request of a message, which must be for this robot."""
@@ -134,11 +157,16 @@ class Server:
             self._topic.put(to_json(telemetry))
 
 
-def _reply(query: Any, message: Answer | Telemetry) -> None:
+def _emptied(queue: deque[Asked]) -> list[Asked]:
+    """What a queue has had, to which another thread adds."""
+    return [queue.popleft() for _ in range(len(queue))]
+
+
+def _reply(query: Any, message: Message) -> None:
     """Send an answer; whoever asked may have gone."""
     from zenoh import ZError
 
     with contextlib.suppress(ZError):
         query.reply(REQUESTS, to_json(message))
-    if isinstance(message, Telemetry) or message.is_final:
+    if not isinstance(message, Answer) or message.is_final:
         query.drop()

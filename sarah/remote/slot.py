@@ -1,22 +1,31 @@
-"""The slot for new parameters: one place, in which the newest push waits for the next swap of legs.
+"""The slot for new parameters: one place, in which the newest push or window waits for the next swap of legs.
 
 It is called from the control loop alone, in each tick, and knows neither sockets nor threads.
 """
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Iterable
-from dataclasses import astuple, dataclass
+from dataclasses import dataclass
 from typing import NamedTuple
 
 from sarah.control.hip_law import BalanceParameters
-from sarah.control.parameters import Parameters
-from sarah.control.pattern_generator import STAND_SECONDS, Phase, SteppingParameters
-from sarah.control.supervisor import State, Supervisor
+from sarah.control.pattern_generator import STAND_SECONDS, SteppingParameters
+from sarah.control.supervisor import ASKED_TO_STAND, State, Supervisor
 from sarah.drivers.loop import LoopTick
 from sarah.operation.settings import controller_parameters
-from sarah.remote.answers import Answer, Outcome, Telemetry
+from sarah.remote.answers import Answer, Message, Outcome
+from sarah.remote.measurement import Measurement, Meter
+from sarah.remote.moment import Moment, present
 from sarah.remote.requests import LARGEST_CHANGE, Request, merged, too_large
+
+UPRIGHT_SECONDS = 2.0
+"""Time for which a robot that fell must stand upright before a learner's window lets it step again, in s."""
+TOLD_SECONDS = 5.0
+"""Time after which a learner whose window waits hears why, again and again, in s."""
+LEARNER_SECONDS = 10.0
+"""Time after a learner's last window for which the robot is its alone, in s of the computer's clock."""
 
 
 class Asked(NamedTuple):
@@ -27,7 +36,21 @@ class Asked(NamedTuple):
     """
 
     request: Request
-    reply: Callable[[Answer | Telemetry], None]
+    reply: Callable[[Message], None]
+
+
+@dataclass
+class Waiting:
+    """A request that waits in the slot.
+
+    :param asked: the request
+    :param since: time since the robot began at which it came, in s
+    :param told: time since the robot began at which whoever asked last heard why it waits, in s
+    """
+
+    asked: Asked
+    since: float
+    told: float = float("-inf")
 
 
 @dataclass(frozen=True)
@@ -45,19 +68,36 @@ class Trial:
 class Slot:
     """One place for new parameters. Call :meth:`tick` once per tick of the control loop, after the controller's tick.
 
-    A push is applied in the tick in which a step begins, or at once while the robot stands or has fallen. In the first
-    second it waits, because the loop gives the robot its own parameters at the end of it.
+    They are applied in the tick in which a step begins, or at once while the robot stands or has fallen. In the first
+    second they wait, because the loop gives the robot its own parameters at the end of it. A window that somebody asked
+    for then runs; it lets a robot step that has stopped by itself, but none that somebody asked to stand.
 
     :param dt: control period, in s
     :param largest_change: largest change of a parameter, as a share of its range
+    :param meter: what windows are measured by; without it they are refused
+    :param clock: clock by which a learner counts as gone, in s
     """
 
-    def __init__(self, dt: float, largest_change: float = LARGEST_CHANGE) -> None:
-        self._standing_ticks = round(STAND_SECONDS / dt)
-        self._largest_change = largest_change
-        self._waiting: Asked | None = None
+    def __init__(
+        self,
+        dt: float,
+        largest_change: float = LARGEST_CHANGE,
+        meter: Meter | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self._standing_ticks, self._upright_needed = round(STAND_SECONDS / dt), round(UPRIGHT_SECONDS / dt)
+        self._largest_change, self._meter, self._clock = largest_change, meter, clock
+        self._waiting: Waiting | None = None
         self._trial: Trial | None = None
-        self._ticks = 0
+        self._window: tuple[Measurement, Asked] | None = None
+        self._learner, self._heard = "", float("-inf")
+        self._ticks = self._upright_ticks = 0
+        self._is_held = False
+
+    @property
+    def is_idle(self) -> bool:
+        """Whether nothing waits, is tried or is measured."""
+        return self._waiting is None and self._trial is None and self._window is None
 
     def tick(self, tick: LoopTick, supervisor: Supervisor, arrived: Iterable[Asked] = ()) -> None:
         """Do what was asked, as far as it can be done in this tick.
@@ -68,9 +108,11 @@ class Slot:
         """
         moment = Moment(self._ticks, tick, supervisor)
         self._ticks += 1
+        self._watch(moment)
         for asked in arrived:
             self._take(asked, moment)
         self._judge(moment)
+        self._measure(moment)
         self._apply(moment)
 
     def close(self, reason: str) -> None:
@@ -78,13 +120,23 @@ class Slot:
 
         :param reason: reason for it
         """
-        for asked in (self._waiting, None if self._trial is None else self._trial.asked):
+        waiting = None if self._waiting is None else self._waiting.asked
+        trial = None if self._trial is None else self._trial.asked
+        for asked in (waiting, trial, None if self._window is None else self._window[1]):
             if asked is not None:
                 asked.reply(Answer(Outcome.ENDED, reason))
-        self._waiting = self._trial = None
+        self._waiting = self._trial = self._window = None
+
+    def _watch(self, moment: Moment) -> None:
+        """Keep in mind whether somebody asked the robot to stand, and for how long one that fell has been upright."""
+        supervisor = moment.supervisor
+        if supervisor.state_change is not None and supervisor.state_change.reason == ASKED_TO_STAND:
+            self._is_held = True
+        is_up_again = supervisor.has_fallen and supervisor.is_upright
+        self._upright_ticks = self._upright_ticks + 1 if is_up_again else 0
 
     def _take(self, asked: Asked, moment: Moment) -> None:
-        """Stand or step, or put a push into the slot."""
+        """Stand or step, or put parameters into the slot."""
         supervisor, kind = moment.supervisor, asked.request.kind
         if kind == "stand":
             if supervisor.has_fallen:
@@ -92,23 +144,46 @@ class Slot:
                 return
             if not supervisor.is_waiting:
                 supervisor.stand()
+            self._is_held = True
             asked.reply(moment.answer(Outcome.APPLIED))
         elif kind == "step":
             if not supervisor.is_waiting:
                 words = "stops: ask again when it stands" if supervisor.state is State.STOPPING else "steps already"
                 asked.reply(moment.answer(Outcome.REFUSED, f"the robot {words}"))
                 return
+            self._is_held = False
             supervisor.step()
             asked.reply(moment.answer(Outcome.APPLIED))
+        elif self._is_operated_by_another(asked.request.learner):
+            asked.reply(moment.answer(Outcome.BUSY, "a learner operates the robot"))
         elif reason := self._refusal(asked, supervisor):
             asked.reply(moment.answer(Outcome.REFUSED, reason))
         else:
-            if self._waiting is not None:
-                self._waiting.reply(moment.answer(Outcome.OVERTAKEN, "newer parameters came before it was applied"))
-            self._waiting = asked
+            self._put(asked, moment)
+
+    def _put(self, asked: Asked, moment: Moment) -> None:
+        """Put parameters into the slot. A learner that asks for a window again has lost the one before."""
+        overtaken = moment.answer(Outcome.OVERTAKEN, "newer parameters came before it was applied")
+        if self._waiting is not None:
+            self._waiting.asked.reply(overtaken)
+        self._waiting = Waiting(asked, moment.tick.seconds)
+        if asked.request.kind == "window":
+            self._learner = asked.request.learner
+        if self._window is not None:
+            self._window[1].reply(moment.answer(Outcome.OVERTAKEN, "newer parameters came before it was over"))
+            self._window = None
+
+    def _is_operated_by_another(self, learner: str) -> bool:
+        """Whether a window of another learner waits or runs, or has just been."""
+        is_at_it = self._window is not None or (
+            self._waiting is not None and self._waiting.asked.request.kind == "window"
+        )
+        return learner != self._learner and (is_at_it or self._clock() < self._heard + LEARNER_SECONDS)
 
     def _refusal(self, asked: Asked, supervisor: Supervisor) -> str:
-        """Reason to refuse a push, once the robot has parameters of its own to compare it with."""
+        """Reason to refuse parameters, once the robot has some of its own to compare them with."""
+        if asked.request.kind == "window" and self._meter is None:
+            return "this robot measures no windows"
         if self._ticks <= self._standing_ticks:
             return ""
         return too_large(asked.request.values, present(supervisor), self._largest_change)
@@ -130,10 +205,26 @@ class Slot:
         self._trial = None
         trial.asked.reply(answer)
 
+    def _measure(self, moment: Moment) -> None:
+        """Go on with the window that is measured, and answer once it is over, or once somebody stops the robot."""
+        if self._window is None:
+            return
+        measurement, asked = self._window
+        message = moment.answer(Outcome.STOPPED, ASKED_TO_STAND) if self._is_held else measurement.tick(moment)
+        if message is not None:
+            self._window, self._heard = None, self._clock()
+            asked.reply(message)
+
     def _apply(self, moment: Moment) -> None:
         """Give the robot the parameters that wait, if this is the tick for it."""
-        asked, supervisor = self._waiting, moment.supervisor
-        if asked is None or self._ticks <= self._standing_ticks or not moment.is_swap:
+        waiting, supervisor = self._waiting, moment.supervisor
+        if waiting is None or self._ticks <= self._standing_ticks or not moment.is_swap:
+            return
+        asked = waiting.asked
+        if asked.request.kind == "window" and (hindrance := self._hindrance(supervisor)):
+            if moment.tick.seconds >= waiting.told + TOLD_SECONDS:
+                waiting.told = moment.tick.seconds
+                asked.reply(moment.answer(Outcome.WAITING, hindrance, is_final=False))
             return
         self._waiting = None
         if reason := self._refusal(asked, supervisor):  # the supervisor may have put others back meanwhile
@@ -142,45 +233,34 @@ class Slot:
         supervisor.set_parameters(*controller_parameters(merged(asked.request.values, present(supervisor))))
         if self._trial is not None:
             self._trial.asked.reply(moment.answer(Outcome.OVERTAKEN, "newer parameters came before it was proven"))
+            self._trial = None
+        if asked.request.kind == "window":
+            self._begin_window(asked, moment, waiting.since)
+        else:
+            self._begin_trial(asked, moment)
+
+    def _hindrance(self, supervisor: Supervisor) -> str:
+        """Reason for which a window cannot begin yet; empty if it can."""
+        if self._is_held:
+            return "somebody asked the robot to stand: sarah-push --step lets it go on"
+        truth = None if self._meter is None else self._meter.truth
+        lies = truth is not None and truth.has_fallen
+        if lies or (supervisor.has_fallen and self._upright_ticks < self._upright_needed):
+            return "the robot has fallen: it goes on when somebody has put it up"
+        return ""
+
+    def _begin_window(self, asked: Asked, moment: Moment, since: float) -> None:
+        """Let a robot step that has stopped by itself, and measure."""
+        assert self._meter is not None and asked.request.window is not None
+        measurement = Measurement(self._meter, asked.request.window, moment, since)
+        moment.supervisor.step()
+        self._window = measurement, asked
+        asked.reply(moment.answer(Outcome.APPLIED, is_final=False))
+
+    def _begin_trial(self, asked: Asked, moment: Moment) -> None:
+        """Watch what becomes of pushed parameters, if the robot steps. A learner that pushes leaves the robot."""
+        supervisor = moment.supervisor
         self._trial = None if supervisor.is_waiting else Trial(supervisor.asked, asked)
         reason = "they are tried once the robot steps" if supervisor.is_waiting else ""
         asked.reply(moment.answer(Outcome.APPLIED, reason, self._trial is None))
-
-
-class Moment(NamedTuple):
-    """A tick of the control loop.
-
-    :param number: number of the tick, from 0
-    :param tick: what happened in it
-    :param supervisor: controller of the loop
-    """
-
-    number: int
-    tick: LoopTick
-    supervisor: Supervisor
-
-    @property
-    def is_swap(self) -> bool:
-        """Whether new parameters can be applied: a step begins, or the robot stands or has fallen."""
-        if self.supervisor.state is State.STEPPING:
-            return self.tick.change is not None and self.tick.change.ended in (Phase.STAND, Phase.LAND)
-        return self.supervisor.state is not State.STOPPING
-
-    def answer(self, outcome: Outcome, reason: str = "", is_final: bool = True) -> Answer:
-        """Answer of this tick.
-
-        :param outcome: what became of the request
-        :param reason: reason for it
-        :param is_final: whether no other answer follows
-        """
-        state, phase = self.supervisor.state.value, self.supervisor.phase.value
-        return Answer(outcome, reason, is_final, self.number, round(self.tick.seconds, 4), state, phase)
-
-
-def present(supervisor: Supervisor) -> Parameters:
-    """Values of P1 to P5 and V1 to V4 that a robot was given.
-
-    :param supervisor: its controller
-    """
-    stepping, balance = supervisor.asked
-    return (*astuple(stepping), *astuple(balance))
+        self._learner, self._heard = "", float("-inf")

@@ -38,7 +38,7 @@ def episodes_of_session(path: Path) -> list[RunEpisode]:
     """Episodes of a session: the parameters that it ended with, those of the best window, and those of every window.
 
     The viewer plays each window as it was, and goes on with the next one. For other commands it is an episode of its
-    own, from standing, on the robot as it was in the window.
+    own, from standing, on the robot as it was in the window. So it is for the viewer if the robot ran by itself.
 
     :param path: path of the session's folder, which need not be finished
     :raises RunFolderError: if a file of it cannot be read, or if it has no window
@@ -46,9 +46,9 @@ def episodes_of_session(path: Path) -> list[RunEpisode]:
     folder = SessionFolder.open(path)
     spec, windows = folder.spec(), _windows(folder)
     shown = [learned_of_session(path)] if folder.is_finished else []
-    replay = SessionReplay(spec, windows)
+    replay = SessionReplay(spec, windows) if folder.robot is None else None
     episodes = [_episode(spec, replay, window, window is windows[-1]) for window in windows]
-    best = episodes[max(range(len(windows)), key=lambda index: windows[index].score)]
+    best = episodes[max(range(len(windows)), key=lambda index: windows[index].worth)]
     return [*shown, replace(best, name="best", label=f"best: {best.label}"), *episodes]
 
 
@@ -60,15 +60,15 @@ def _windows(folder: SessionFolder) -> list[Window]:
     return windows
 
 
-def _episode(spec: SessionSpec, replay: SessionReplay, window: Window, is_last: bool) -> RunEpisode:
-    fell = ", fell" if window.fell else ""
-    label = f"window {window.index} · {window.begin / 60.0:.1f} min · score {window.score:.2f}{fell}"
+def _episode(spec: SessionSpec, replay: SessionReplay | None, window: Window, is_last: bool) -> RunEpisode:
+    fell, worth = ", fell" if window.fell else "", "score" if window.score is not None else "observed reward"
+    label = f"window {window.index} · {window.begin / 60.0:.1f} min · {worth} {window.worth:.2f}{fell}"
     return RunEpisode(
         str(window.index),
         label,
         episode_spec(window.parameters, spec, window.changes),
-        recorded=partial(replay.record, window.index),
-        next_name=None if is_last else str(window.index + 1),
+        recorded=None if replay is None else partial(replay.record, window.index),
+        next_name=None if is_last or replay is None else str(window.index + 1),
     )
 
 

@@ -3,6 +3,7 @@
 session.yaml  command.txt  versions.txt    the specification, the command and the versions of the session
 journal.jsonl                              every window in full, from which a session is resumed
 windows.csv                                one row per window
+robot.yaml                                 a robot that runs by itself: where it listens, and what it says it is
 events.out.tfevents.*                      curves for TensorBoard
 parameters.json                            the parameters that the robot is left with
 session.png  session.pdf                   score over time, with falls and changes
@@ -28,6 +29,7 @@ from sarah.runs.config_files import read_config, settings_by_key, write_config
 from sarah.runs.kinds import SESSION
 from sarah.runs.run_folder import read_parameters
 from sarah.runs.session import SessionSpec
+from sarah.runs.session_robot import SessionRobot
 
 NAMES = tuple(parameter.name for parameter in PARAMETERS)
 COLUMNS = ("index", "begin", "seconds", "changes", *NAMES, "score", "observed_reward", "fell", *FELT)
@@ -47,14 +49,18 @@ class SessionFolder(Folder):
         self.picture_path = path / "session"
         self.frozen_path = path / "frozen"
         self._windows_path = path / "windows.csv"
+        self._robot_path = path / "robot.yaml"
 
     @classmethod
-    def create(cls, path: Path, spec: SessionSpec, compare_frozen: bool = False) -> SessionFolder:
+    def create(
+        cls, path: Path, spec: SessionSpec, compare_frozen: bool = False, robot: SessionRobot | None = None
+    ) -> SessionFolder:
         """Make a new folder, and write the specification.
 
         :param path: path of the folder, which must be new or empty
         :param spec: specification of the session
         :param compare_frozen: whether it is to be compared with the same session without learning
+        :param robot: robot that runs by itself, if the session does not simulate one
         :raises RunFolderError: if the folder is not empty or cannot be written
         """
         folder = cls(path)
@@ -62,6 +68,8 @@ class SessionFolder(Folder):
         def write() -> None:
             if compare_frozen:
                 folder.add_frozen(spec)
+            if robot is not None:
+                write_config(robot, folder._robot_path)
             write_config(spec, folder.specification_path)
 
         folder.begin(write)
@@ -77,6 +85,14 @@ class SessionFolder(Folder):
         folder = cls(path)
         folder.check()
         return folder
+
+    @property
+    def robot(self) -> SessionRobot | None:
+        """Robot that runs by itself; ``None`` if the session simulates its robot.
+
+        :raises ConfigurationError: naming file, key and value, if a value is not allowed
+        """
+        return read_config(SessionRobot, self._robot_path) if self._robot_path.is_file() else None
 
     @property
     def frozen(self) -> SessionFolder | None:
@@ -171,7 +187,7 @@ def _row(window: Window) -> tuple[object, ...]:
     return (
         *(window.index, window.begin, window.seconds, window.changes),
         *window.parameters,
-        *(window.score, window.observed_reward, int(window.fell)),
+        *("" if window.score is None else window.score, window.observed_reward, int(window.fell)),
         *window.felt,
     )
 
@@ -183,7 +199,7 @@ def _window(row: Mapping[str, str]) -> Window:
         seconds=number(row["seconds"]),
         changes=whole_number(row["changes"]),
         parameters=BOX.checked([number(row[name]) for name in NAMES]),
-        score=number(row["score"]),
+        score=number(row["score"]) if row["score"] else None,
         observed_reward=number(row["observed_reward"]),
         fell=row["fell"] == "1",
         felt=tuple(number(row[name]) for name in FELT),

@@ -8,6 +8,7 @@ from functools import partial
 
 from sarah.episode.running_robot import Observer
 from sarah.errors import TrainingInterruptedError, check_type
+from sarah.operation.operated_robot import OperatedRobot
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import PARAMETERS, Parameters
 from sarah.operation.window import Window
@@ -17,6 +18,9 @@ from sarah.runs.event_file import EventFile
 from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
 from sarah.training.session_learners import LEARNERS
+
+MakeRobot = Callable[..., OperatedRobot]
+"""Function that makes a robot of what :class:`~sarah.operation.robot_in_operation.RobotInOperation` is made of."""
 
 
 @dataclass(frozen=True)
@@ -36,12 +40,12 @@ class SessionResult:
         return sum(window.fell for window in self.windows)
 
     def mean_score(self, begin: float = 0.0, end: float = float("inf")) -> float:
-        """Mean score of the windows that ended within a span of time.
+        """Mean score of the windows that ended within a span of time; of a robot without scores, the observed reward.
 
         :param begin: time of operation, in min
         :param end: time of operation, in min
         """
-        scores = [window.score for window in self.windows if 60.0 * begin < window.end <= 60.0 * end]
+        scores = [window.worth for window in self.windows if 60.0 * begin < window.end <= 60.0 * end]
         return sum(scores) / len(scores) if scores else float("nan")
 
 
@@ -50,6 +54,7 @@ def run_session(
     watch: Callable[[Window], None] = lambda window: None,
     journal: Journal | None = None,
     observers: Sequence[Observer] = (),
+    make_robot: MakeRobot = RobotInOperation,
 ) -> SessionResult:
     """Operate a robot from standing to the end of the operation's time.
 
@@ -57,6 +62,7 @@ def run_session(
     :param watch: function that is called with every window
     :param journal: journal of the session, whose windows are not simulated again; without one nothing is recorded
     :param observers: further records of what the robot does, in each window that is simulated
+    :param make_robot: function that makes the robot; by default it is simulated
     :return: the result
     :raises ResumeError: if the learner asks for other parameters than a window of the journal has
     """
@@ -69,9 +75,10 @@ def run_session(
             with outside():
                 watch(window)
 
-        robot = RobotInOperation(spec.config, spec.seed, watch_outside, journal, observers)
+        robot = make_robot(spec.config, spec.seed, watch_outside, journal, observers)
         try:
             parameters = LEARNERS[spec.learner](robot, spec.parameters, spec.seed)
+            robot.leave(parameters)
         finally:
             robot.close()
     return SessionResult(tuple(windows), parameters)
@@ -83,6 +90,7 @@ def operate(
     watch: Callable[[Window], None] = lambda window: None,
     interrupted: Callable[[], bool] = lambda: False,
     observers: Sequence[Observer] = (),
+    make_robot: MakeRobot = RobotInOperation,
 ) -> SessionResult:
     """Run a session, or go on with it, and write its folder.
 
@@ -91,6 +99,7 @@ def operate(
     :param watch: function that is called with every window, also with those that are known
     :param interrupted: function that says after every window whether to stop
     :param observers: further records of what the robot does, in each window that is simulated
+    :param make_robot: function that makes the robot; by default it is simulated
     :return: the result
     :raises ResumeError: if the folder was begun with another specification, code or versions, or is in use
     :raises TrainingInterruptedError: if ``interrupted`` asks to stop
@@ -113,7 +122,7 @@ def operate(
                 raise TrainingInterruptedError("the session was interrupted")
 
         try:
-            result = run_session(spec, add, journal, observers)
+            result = run_session(spec, add, journal, observers, make_robot)
             journal.check_asked()
         finally:
             if events is not None:
@@ -181,7 +190,8 @@ def add_frozen(folder: SessionFolder) -> None:
 def _show(events: EventFile, window: Window) -> None:
     """Add a window to TensorBoard's curves, at its second of operation."""
     values = {f"parameters/{item.name}": value for item, value in zip(PARAMETERS, window.parameters, strict=True)}
-    values |= {"operation/score": window.score, "operation/observed_reward": window.observed_reward}
+    values |= {} if window.score is None else {"operation/score": window.score}
+    values |= {"operation/observed_reward": window.observed_reward}
     values |= {"operation/fell": float(window.fell), "operation/changes": float(window.changes)}
     events.add_points(values, round(window.end))
 

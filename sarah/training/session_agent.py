@@ -6,7 +6,7 @@ from typing import Any
 
 from sarah.agents import PRESETS, LocalNAF, RankReplayBuffer
 from sarah.envs.operation_env import SarahOperationEnv
-from sarah.operation.robot_in_operation import RobotInOperation
+from sarah.operation.operated_robot import OperatedRobot
 from sarah.operation.settings import Parameters
 
 UNSMOOTHED: dict[str, Any] = dict(replay_buffer_class=RankReplayBuffer, elite_share=0.5, elite_draws=16)
@@ -15,7 +15,7 @@ LONGEST = 1_000_000
 """Number of windows that no operation has."""
 
 
-def operate_by_naf(robot: RobotInOperation, first: Parameters, seed: int) -> Parameters:
+def operate_by_naf(robot: OperatedRobot, first: Parameters, seed: int) -> Parameters:
     """Operate a robot by LocalNAF with its preset for few steps, around the first parameters, until the time is over.
 
     A window is worth its own reward only.

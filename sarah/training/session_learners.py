@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from sarah.operation.robot_in_operation import RobotInOperation
+from sarah.operation.operated_robot import OperatedRobot
 from sarah.operation.settings import BOX, Parameters
 from sarah.runs.agent_settings import AgentSettings, EvolutionSettings
 from sarah.training.optimisers import EvolutionStrategy, RandomSearch
@@ -14,7 +14,7 @@ AROUND_THE_FIRST = EvolutionSettings(deviation=0.16, population=10)
 """Settings of CMA-ES in a session: a robot in operation is not to leave the parameters that it walks with at once."""
 
 
-def operate(robot: RobotInOperation, search: Search) -> Parameters:
+def operate(robot: OperatedRobot, search: Search) -> Parameters:
     """Operate a robot with the parameters that a search asks for, a window each, until the operation is over.
 
     :param robot: robot to operate
@@ -28,33 +28,33 @@ def operate(robot: RobotInOperation, search: Search) -> Parameters:
     return search.choice()
 
 
-def _none(robot: RobotInOperation, first: Parameters, seed: int) -> Parameters:
+def _none(robot: OperatedRobot, first: Parameters, seed: int) -> Parameters:
     while not robot.is_over:
         robot.run(first)
     return first
 
 
-def _random(robot: RobotInOperation, first: Parameters, seed: int) -> Parameters:
+def _random(robot: OperatedRobot, first: Parameters, seed: int) -> Parameters:
     return operate(robot, RandomSearch(AgentSettings(), BOX, seed, Start(first)))
 
 
-def _evolution(robot: RobotInOperation, first: Parameters, seed: int) -> Parameters:
+def _evolution(robot: OperatedRobot, first: Parameters, seed: int) -> Parameters:
     return operate(robot, EvolutionStrategy(AROUND_THE_FIRST, BOX, seed, Start(first)))
 
 
-def _careful(robot: RobotInOperation, first: Parameters, seed: int) -> Parameters:
+def _careful(robot: OperatedRobot, first: Parameters, seed: int) -> Parameters:
     from sarah.training.careful import CarefulSearch  # slow to import because of scikit-learn
 
     return operate(robot, CarefulSearch(BOX, seed, first))
 
 
-def _naf(robot: RobotInOperation, first: Parameters, seed: int) -> Parameters:
+def _naf(robot: OperatedRobot, first: Parameters, seed: int) -> Parameters:
     from sarah.training.session_agent import operate_by_naf  # slow to import because of torch
 
     return operate_by_naf(robot, first, seed)
 
 
-LEARNERS: dict[str, Callable[[RobotInOperation, Parameters, int], Parameters]] = {
+LEARNERS: dict[str, Callable[[OperatedRobot, Parameters, int], Parameters]] = {
     "none": _none,
     "careful": _careful,
     "naf": _naf,

@@ -9,7 +9,8 @@ from pathlib import Path
 import pytest
 from terminal import COARSE, Answer, done, run
 
-from sarah.cli.operate import change_of, scores_of
+from sarah.cli.operate import change_of
+from sarah.cli.operate_text import scores_of
 from sarah.errors import TrainingInterruptedError
 from sarah.operation.settings import PARAMETERS, SHIPPED, Change
 from sarah.operation.window import FELT, Window

@@ -38,6 +38,7 @@ from sarah.remote.client import Client
 from sarah.remote.endpoints import REQUESTS, Endpoint
 from sarah.remote.requests import LearnedWith, Request, read_request
 from sarah.remote.server import Server
+from sarah.remote.slot import Slot
 
 NEAR = {"V1": (0.5, 0.9), "V2": (0.0, 0.5), "V3": (0.4, 0.8), "V4": (-0.5, 0.2)}
 """Ranges of V1 to V4 with which the robot steps well."""
@@ -173,7 +174,7 @@ def in_this_process() -> Iterator[Robot]:
         if tick.change is not None and tick.change.ended is Phase.LAND:
             swaps.append(number)
 
-    with contextlib.closing(Server(endpoint, LearnedWith.of(config), dt)) as server:
+    with contextlib.closing(Server(endpoint, LearnedWith.of(config), Slot(dt))) as server:
         spec = EpisodeSpec(shipped.parameters, 0, shipped.task, config)
         robot, loop = simulated_loop(spec, pacing=RealTime(dt), observers=[look, server])
 

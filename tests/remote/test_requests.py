@@ -53,7 +53,10 @@ def changed(change: Callable[[dict[str, Any]], Any]) -> bytes:
         (changed(lambda it: it.update(schema=2)), "schema must be 1, not 2"),
         (changed(lambda it: it.update(schema=True)), "schema must be 1, not True"),
         (changed(lambda it: it.update(kind="pusch")), "unknown kind of request 'pusch', did you mean 'push'?"),
-        (changed(lambda it: it.update(kind=["push"])), "kind must be one of push, stand, step, state, not ['push']"),
+        (
+            changed(lambda it: it.update(kind=["push"])),
+            "kind must be one of push, stand, step, state, window, identity, not ['push']",
+        ),
         (changed(lambda it: it.update(kind="stand")), "a request to stand has no values"),
         (changed(lambda it: it.update(values={})), "a request to push has to have values"),
         (changed(lambda it: it.update(values=[0.4])), "values must hold names and numbers, not [0.4]"),

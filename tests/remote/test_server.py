@@ -21,6 +21,7 @@ from sarah.remote.client import Client
 from sarah.remote.endpoints import REQUESTS, TELEMETRY, Certificates, Endpoint
 from sarah.remote.requests import LearnedWith, Request
 from sarah.remote.server import Server
+from sarah.remote.slot import Slot
 
 pytest.importorskip("zenoh")
 
@@ -79,7 +80,7 @@ def test_a_request_that_is_dropped_unread_is_sent_again() -> None:
 def test_an_address_that_is_taken_is_one_line() -> None:
     endpoint = Endpoint(f"tcp/127.0.0.1:{free_port()}")
     with robot(endpoint), pytest.raises(RobotError, match=r"cannot listen at .*Address already in use"):
-        Server(endpoint, LearnedWith(), DT)
+        Server(endpoint, LearnedWith(), Slot(DT))
 
 
 def authority(folder: Path) -> Callable[[str], Certificates]:

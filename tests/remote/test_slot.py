@@ -15,8 +15,9 @@ from sarah.control.supervisor import State, Supervisor
 from sarah.control.watches import SupervisorSettings
 from sarah.drivers.loop import LoopTick
 from sarah.remote.answers import Outcome
+from sarah.remote.moment import present
 from sarah.remote.requests import Request
-from sarah.remote.slot import Asked, Slot, present
+from sarah.remote.slot import Asked, Slot
 
 SWAP = PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
 FIRST = 101
@@ -151,7 +152,7 @@ class Scripted:
         self.state, self.phase, self.state_change = state, Phase.SHIFT, None
         self.asked = SteppingParameters(*PAPER_STEPPING), BALANCE
         self.proven = self.asked
-        self.is_waiting = state is State.FALLEN
+        self.is_waiting, self.is_upright = state is State.FALLEN, True
 
     @property
     def has_fallen(self) -> bool:
