@@ -149,13 +149,16 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
         progress = Progress(spec.config.physics.control_dt, options.read_only)
         stack.callback(progress.close)
         loop = _loop(options, spec, [progress])
+        stack.callback(loop.driver.close)
         server = None
         if options.listen is not None:
             server = stack.enter_context(contextlib.closing(_server(options, spec, loop, is_interrupted)))
             loop.observers = (*loop.observers, server)
+        if options.driver is None:
+            say_engine(spec.config)
+            print(_simulated(options, spec), file=sys.stderr)
         values = {**vars(loop.parameters), **vars(loop.balance)}
         print(", ".join(f"{name} {value:.3g}" for name, value in values.items()), file=sys.stderr)
-        stack.callback(loop.driver.close)
         if not options.read_only:
             stack.callback(loop.driver.off)
         log = None if options.log is None else stack.enter_context(_logged(options, spec, loop))
@@ -192,12 +195,11 @@ def _server(options: RobotOptions, spec: EpisodeSpec, loop: ControlLoop, is_inte
     endpoint = endpoint_of(options.listen, options.authority, options.certificate, options.key)
     robot = loop.driver
     truth = robot if isinstance(robot, SimulatedRobot) else None
-    simulated = f"simulated by {spec.config.engine}, seed {options.seed}"
     server = Server(
         endpoint,
         LearnedWith.of(spec.config),
         Slot(loop.dt, options.largest_change, Meter(spec.config, truth)),
-        identity_of(spec.config, options.driver or simulated, options.lockstep, truth is not None),
+        identity_of(spec.config, options.driver or _simulated(options, spec), options.lockstep, truth is not None),
         lambda: options.lockstep and not is_interrupted(),
     )
     print(f"listening at {endpoint.address}", file=sys.stderr)
@@ -209,9 +211,6 @@ def _loop(options: RobotOptions, spec: EpisodeSpec, observers: Sequence[LoopObse
     config, dt = spec.config, spec.config.physics.control_dt
     pacing = RealTime(dt) if options.real_time else None
     if options.driver is None:
-        say_engine(config)
-        failing = "" if options.fault == "none" else f", from {1.0 + options.fault_after:g} s on: {options.fault}"
-        print(f"simulated by {config.engine}, seed {options.seed}{failing}", file=sys.stderr)
         plan = FaultPlan(FAULTS[options.fault], options.fault_after)
         seeded, goes_on = dataclasses.replace(spec, seed=options.seed), options.listen is not None
         _, loop = simulated_loop(seeded, plan, pacing, observers, goes_on=goes_on)
@@ -224,6 +223,12 @@ def _loop(options: RobotOptions, spec: EpisodeSpec, observers: Sequence[LoopObse
     if options.stand:
         _still_moves(loop)
     return loop
+
+
+def _simulated(options: RobotOptions, spec: EpisodeSpec) -> str:
+    """How the robot is simulated, in words."""
+    failing = "" if options.fault == "none" else f", from {1.0 + options.fault_after:g} s on: {options.fault}"
+    return f"simulated by {spec.config.engine}, seed {options.seed}{failing}"
 
 
 def _still_moves(loop: ControlLoop) -> bool:
