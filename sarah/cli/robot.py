@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import contextlib
 import dataclasses
+import itertools
 import signal
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -20,6 +22,7 @@ from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.robot_progress import Progress
 from sarah.cli.subjects import learned_of
 from sarah.control.hip_law import LOCKED_HIPS
+from sarah.control.parameters import Parameters
 from sarah.control.supervisor import State, Supervisor
 from sarah.drivers.driver_file import mistakes_of, read_driver
 from sarah.drivers.faults import FAULTS
@@ -31,7 +34,9 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import controller_of
 from sarah.errors import ConfigurationError, unknown_name
+from sarah.operation.window import Window
 from sarah.ranges import Within
+from sarah.remote.answers import Measured
 from sarah.remote.identity import identity_of
 from sarah.remote.measurement import Meter
 from sarah.remote.requests import LARGEST_CHANGE, LearnedWith
@@ -150,9 +155,10 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
         stack.callback(progress.close)
         loop = _loop(options, spec, [progress])
         stack.callback(loop.driver.close)
-        server = None
+        server = meter = None
         if options.listen is not None:
-            server = stack.enter_context(contextlib.closing(_server(options, spec, loop, is_interrupted)))
+            meter = _meter(spec, loop)
+            server = stack.enter_context(contextlib.closing(_server(options, spec, meter, is_interrupted)))
             loop.observers = (*loop.observers, server)
         if options.driver is None:
             say_engine(spec.config)
@@ -162,6 +168,8 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
         if not options.read_only:
             stack.callback(loop.driver.off)
         log = None if options.log is None else stack.enter_context(_logged(options, spec, loop))
+        if log is not None and meter is not None:
+            meter.watch = partial(_log_window, log, itertools.count(), loop.dt)
         if options.real_time:
             print(stack.enter_context(undisturbed(() if server is None else (server.thread,))), file=sys.stderr)
         if options.driver is not None:
@@ -189,20 +197,31 @@ def _logged(options: RobotOptions, spec: EpisodeSpec, loop: ControlLoop) -> Robo
     return log
 
 
-def _server(options: RobotOptions, spec: EpisodeSpec, loop: ControlLoop, is_interrupted: Callable[[], bool]) -> Server:
+def _meter(spec: EpisodeSpec, loop: ControlLoop) -> Meter:
+    """What the robot measures windows by. A simulated one also knows what is true."""
+    return Meter(spec.config, loop.driver if isinstance(loop.driver, SimulatedRobot) else None)
+
+
+def _log_window(log: RobotLog, numbers: Iterator[int], dt: float, parameters: Parameters, measured: Measured) -> None:
+    """Log a window that is over."""
+    worth = (measured.score, measured.observed_reward, measured.fell, tuple(measured.felt))
+    window = Window(next(numbers), measured.began, round(measured.ticks * dt, 9), 0, parameters, *worth)
+    log.window(window.end, window.plain())
+
+
+def _server(options: RobotOptions, spec: EpisodeSpec, meter: Meter, is_interrupted: Callable[[], bool]) -> Server:
     """What lets others reach the robot."""
     assert options.listen is not None
-    endpoint = endpoint_of(options.listen, options.authority, options.certificate, options.key)
-    robot = loop.driver
-    truth = robot if isinstance(robot, SimulatedRobot) else None
     server = Server(
-        endpoint,
+        endpoint_of(options.listen, options.authority, options.certificate, options.key),
         LearnedWith.of(spec.config),
-        Slot(loop.dt, options.largest_change, Meter(spec.config, truth)),
-        identity_of(spec.config, options.driver or _simulated(options, spec), options.lockstep, truth is not None),
+        Slot(spec.config.physics.control_dt, options.largest_change, meter),
+        identity_of(
+            spec.config, options.driver or _simulated(options, spec), options.lockstep, meter.truth is not None
+        ),
         lambda: options.lockstep and not is_interrupted(),
     )
-    print(f"listening at {endpoint.address}", file=sys.stderr)
+    print(f"listening at {options.listen}", file=sys.stderr)
     return server
 
 

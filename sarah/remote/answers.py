@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, fields
 from enum import Enum
@@ -91,7 +92,8 @@ class Measured:
         :raises ValueError: if something is not
         """
         numbers = [self.observed_reward, self.seconds, self.began, self.tick, self.ticks, *self.felt]
-        if not all(map(is_number, [*numbers, *([] if self.score is None else [self.score])])):
+        numbers += [] if self.score is None else [self.score]
+        if not all(is_number(number) and math.isfinite(number) for number in numbers):
             raise ValueError
         if len(self.felt) != len(FELT) or not isinstance(self.fell, bool) or self.seconds <= 0.0:
             raise ValueError

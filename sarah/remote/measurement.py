@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Protocol
 
+from sarah.control.parameters import Parameters
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.control.supervisor import PUT_BACK, State
 from sarah.episode.reward import RewardSettings
 from sarah.operation.window_record import FeltRecord, TrueRecord
 from sarah.remote.answers import Measured
-from sarah.remote.moment import Moment
+from sarah.remote.moment import Moment, present
 from sarah.remote.requests import WindowTimes
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import Vector
@@ -39,6 +41,8 @@ class Meter:
 
     def __init__(self, config: RewardSettings, truth: Truth | None = None) -> None:
         self.config, self.truth = config, truth
+        self.watch: Callable[[Parameters, Measured], None] = lambda parameters, measured: None
+        """Function that is called with every window and its parameters. It must not wait."""
         self.height = describe_robot(config.dimensions).standing_height
         """Height of the torso's centre over the floor while the robot stands, in m."""
 
@@ -62,6 +66,8 @@ class Measurement:
         self._true = TrueRecord(meter.height, config, measure)
         self._parameters, self._targets = moment.supervisor.asked, moment.supervisor.targets
         self._reasons: list[str] = []
+        self.parameters = present(moment.supervisor)
+        """P1 to P5 and V1 to V4 that are measured."""
 
     def tick(self, moment: Moment) -> Measured | None:
         """Record a tick, whose beginning is the end of the one before.

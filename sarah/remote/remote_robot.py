@@ -147,6 +147,8 @@ class RemoteRobot(OperatedRobot):
             if isinstance(answer, Measured):
                 return answer
             self._gone_since = (self._gone_since or time.monotonic()) if answer.outcome in GONE else None
+            if answer.outcome is Outcome.APPLIED and self._said:
+                self._say_once(f"the robot has the parameters of window {self.windows}")
             if answer.outcome is Outcome.WAITING:
                 self._say_once(answer.reason)
                 self._pause(0.0)

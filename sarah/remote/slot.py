@@ -15,7 +15,7 @@ from sarah.control.pattern_generator import STAND_SECONDS, SteppingParameters
 from sarah.control.supervisor import ASKED_TO_STAND, State, Supervisor
 from sarah.drivers.loop import LoopTick
 from sarah.operation.settings import controller_parameters
-from sarah.remote.answers import Answer, Message, Outcome
+from sarah.remote.answers import Answer, Measured, Message, Outcome
 from sarah.remote.measurement import Measurement, Meter
 from sarah.remote.moment import Moment, present
 from sarah.remote.requests import LARGEST_CHANGE, Request, merged, too_large
@@ -214,6 +214,8 @@ class Slot:
         if message is not None:
             self._window, self._heard = None, self._clock()
             asked.reply(message)
+            if isinstance(message, Measured) and self._meter is not None:
+                self._meter.watch(measurement.parameters, message)
 
     def _apply(self, moment: Moment) -> None:
         """Give the robot the parameters that wait, if this is the tick for it."""

@@ -1,5 +1,6 @@
 """The simulated robot as a driver: the loop is outside of it, and the episode is the same."""
 
+import contextlib
 import dataclasses
 import itertools
 import re
@@ -155,3 +156,20 @@ def test_a_driver_is_found_in_a_file(tmp_path: Any) -> None:
     ):
         with pytest.raises(ConfigurationError, match=re.escape(words)):
             read_driver(reference)
+
+
+def test_one_that_goes_on_is_put_up_after_a_fall_and_steps_again_when_it_is_asked_to(engine: Any) -> None:
+    config = supervised(BalanceConfig(engine=engine, push=Push(newtons=800.0, at_seconds=(2.0, 2.0)), time_limit=2.5))
+    robot, loop = simulated_loop(EpisodeSpec(V, 3, BALANCE, config), goes_on=True)
+    lay, states = list[bool](), list[State]()
+    with contextlib.closing(robot):
+        for tick in range(900):
+            assert loop.tick()
+            assert isinstance(loop.controller, Supervisor)
+            lay.append(robot.has_fallen)
+            states.append(loop.controller.state)
+            if tick == 600:
+                assert loop.controller.state is State.FALLEN and loop.controller.is_upright
+                loop.controller.step()
+    assert not any(lay[:200]) and any(lay) and not any(lay[600:])
+    assert states[250] is State.FALLEN and states[-1] is State.STEPPING and robot.position[2] > 0.5

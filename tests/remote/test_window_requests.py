@@ -1,0 +1,168 @@
+"""Windows that a robot measures of itself, by hand-made ticks: when they begin, what ends them, and who may ask."""
+
+from typing import Any
+
+import pytest
+from hand_made import BALANCE, DT, heard
+
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.pattern_generator import SteppingParameters
+from sarah.control.supervisor import State, Supervisor
+from sarah.control.watches import SupervisorSettings
+from sarah.drivers.loop import LoopTick
+from sarah.episode.push import PushedConfig
+from sarah.operation.window import FELT
+from sarah.remote.answers import Answer, Measured, Outcome
+from sarah.remote.measurement import Meter
+from sarah.remote.moment import present
+from sarah.remote.requests import Request, WindowTimes
+from sarah.remote.slot import LEARNER_SECONDS, Asked, Slot
+from sarah.robot.reading import SensorReading
+
+TIMES = WindowTimes(1.0, 2.0)
+
+
+class Rig:
+    """A slot with a meter in a loop, whose supervisor hears a robot that rocks from foot to foot once it has stood."""
+
+    def __init__(self) -> None:
+        settings = SupervisorSettings(enabled=True)
+        self.supervisor = Supervisor(SteppingParameters(*PAPER_STEPPING), BALANCE, DT, settings=settings)
+        self.now = 0.0
+        self.slot = Slot(DT, 1.0, Meter(PushedConfig()), lambda: self.now)
+        self.ticks = 0
+
+    def ask(self, kind: str = "window", learner: str = "one", **values: float) -> list[Any]:
+        """Answers, which grow, to something that is asked in one tick."""
+        answers: list[Any] = []
+        is_window = kind == "window"
+        request = Request(kind, values, window=TIMES if is_window else None, learner=learner if is_window else "")
+        self.step(1, Asked(request, answers.append))
+        return answers
+
+    def step(self, ticks: int, *arrived: Asked, still: bool = False, gone: bool = False) -> None:
+        for _ in range(ticks):
+            reading: SensorReading | None = None if gone else heard(self.ticks, still)
+            change = self.supervisor.tick(reading)
+            self.slot.tick(
+                LoopTick(self.ticks * DT, reading, 0.0, self.supervisor, change, 0.0), self.supervisor, arrived
+            )
+            self.ticks += 1
+            arrived = ()
+
+
+@pytest.fixture
+def rig() -> Rig:
+    """A robot that steps."""
+    rig = Rig()
+    rig.step(300)
+    return rig
+
+
+def outcomes(answers: list[Any]) -> list[str]:
+    return ["window" if isinstance(one, Measured) else one.outcome.value for one in answers]
+
+
+def test_a_window_settles_and_is_measured_from_the_next_swap_of_legs_on(rig: Rig) -> None:
+    answers = rig.ask(V1=0.5)
+    asked = rig.ticks - 1
+    rig.step(400)
+    applied, window = answers
+    assert applied.outcome is Outcome.APPLIED and not applied.is_final and applied.tick == window.tick
+    assert present(rig.supervisor)[5] == 0.5
+    assert window.ticks == 300 and window.began == pytest.approx(window.tick * DT) and window.tick > asked
+    assert window.seconds == pytest.approx((window.tick + 301 - asked) * DT)
+    assert 0.3 < window.observed_reward < 1.0 and window.score is None and not window.fell and not window.reason
+    felt = dict(zip(FELT, window.felt, strict=True))
+    assert felt["steps_per_second"] == pytest.approx(3.0, abs=0.6) and felt["a_z_mean"] == pytest.approx(9.81, abs=0.1)
+    assert rig.slot.is_idle
+
+
+def test_a_robot_that_stopped_by_itself_steps_again_after_a_second_of_standing(rig: Rig) -> None:
+    rig.supervisor.stand("a fault")
+    rig.step(100)
+    assert rig.supervisor.is_waiting
+    answers = rig.ask(V1=0.5)
+    rig.step(402)
+    assert outcomes(answers) == ["applied", "window"] and answers[1].ticks == 400
+    assert rig.supervisor.state is State.STEPPING
+
+
+def test_one_that_stops_within_a_window_is_measured_to_its_end_and_told(rig: Rig) -> None:
+    answers = rig.ask(V1=0.5)
+    rig.step(50)
+    rig.step(350, gone=True)
+    assert outcomes(answers) == ["applied", "window"]
+    assert answers[1].ticks == 300 and answers[1].observed_reward < 0.3 and "stopping: stale" in answers[1].reason
+
+
+def test_parameters_that_were_put_back_end_their_window(rig: Rig) -> None:
+    rig.step(500)  # the first ones are proven
+    answers = rig.ask(P1=2.0, P2=2.0)
+    while not answers:
+        rig.step(1)
+    rig.step(300, still=True)
+    assert outcomes(answers) == ["applied", "window"]
+    assert answers[1].reason.startswith("the parameters before are back: no step for 2.0 s")
+    assert answers[1].ticks < 300 and answers[1].observed_reward < 0.3
+    assert present(rig.supervisor)[:2] == PAPER_STEPPING[:2]
+
+
+def test_somebody_who_lets_the_robot_stand_stops_the_learner_until_it_is_let_go(rig: Rig) -> None:
+    answers = rig.ask(V1=0.5)
+    rig.step(100)
+    assert outcomes(rig.ask("stand")) == ["applied"] and outcomes(answers) == ["applied", "stopped"]
+    rig.step(100)
+    again = rig.ask(V1=0.5)
+    rig.step(600)
+    assert set(outcomes(again)) == {"waiting"} and 1 < len(again) < 4 and rig.supervisor.is_waiting
+    assert again[0].reason == "somebody asked the robot to stand: sarah-push --step lets it go on"
+    rig.ask("step")
+    rig.step(500)
+    assert outcomes(again)[-2:] == ["applied", "window"]
+
+
+def test_the_robot_is_its_learners_until_that_is_silent_or_leaves_it(rig: Rig) -> None:
+    first = rig.ask(V1=0.5)
+    assert outcomes(rig.ask(learner="two", V1=0.4)) == ["busy"] == outcomes(rig.ask("push", V1=0.4))
+    again = rig.ask(V1=0.6)
+    rig.step(400)
+    assert outcomes(first)[-1] == "overtaken" and outcomes(again)[-1] == "window"
+    assert outcomes(rig.ask("push", V1=0.4)) == ["busy"]
+    rig.now += LEARNER_SECONDS
+    two = rig.ask(learner="two", V1=0.4)
+    rig.step(400)
+    assert outcomes(two)[-1] == "window" and outcomes(rig.ask(V1=0.5)) == ["busy"]
+    left: list[Any] = []
+    rig.step(100, Asked(Request("push", {"V1": 0.3}, learner="two"), left.append))
+    one = rig.ask(V1=0.5)
+    rig.step(400)
+    assert outcomes(left) == ["applied", "overtaken"] and outcomes(one)[-1] == "window"
+
+
+class Lying:
+    """What is true of a robot that lies, until a test puts it up."""
+
+    position, has_fallen = (0.0, 0.0, 0.9), True
+
+
+def test_a_robot_that_lies_is_measured_once_somebody_has_put_it_up(rig: Rig) -> None:
+    truth = Lying()
+    rig.slot = Slot(DT, 1.0, Meter(PushedConfig(), truth))
+    rig.step(110)
+    answers = rig.ask(V1=0.5)
+    rig.step(300)
+    assert outcomes(answers) == ["waiting"] and answers[0].reason.startswith("the robot has fallen")
+    truth.has_fallen = False
+    rig.step(200)
+    truth.has_fallen = True
+    rig.step(5)
+    assert outcomes(answers) == ["waiting", "applied", "window"] and answers[2].fell
+    assert 0.0 < answers[2].ticks * DT < 2.0 and answers[2].score is not None
+
+
+def test_a_robot_without_a_meter_measures_nothing() -> None:
+    rig = Rig()
+    rig.slot = Slot(DT)
+    (answer,) = rig.ask(V1=0.5)
+    assert isinstance(answer, Answer) and answer.reason == "this robot measures no windows"
