@@ -16,8 +16,8 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
-from listening import free_port
-from terminal import BIN, done
+from listening import free_port, robot
+from terminal import BIN, Answer, done
 
 from sarah.errors import RobotError
 from sarah.remote.client import Client
@@ -95,5 +95,33 @@ def test_the_tutorial(tmp_path: Path) -> None:
     assert stood.startswith("applied at tick")
     log, _, judged = (done(*words, cwd=tmp_path).stdout for words in commands[after:])
     windows = SessionFolder.open(tmp_path / "learned").windows()
-    assert re.search(rf"windows +{len(windows)}, observed reward", log) and (tmp_path / "run.html").stat().st_size > 10_000
+    assert (
+        re.search(rf"windows +{len(windows)}, observed reward", log) and (tmp_path / "run.html").stat().st_size > 10_000
+    )
     assert "survival" in judged
+
+
+HAS_NO_EFFECT = (
+    *("--engine mujoco", "--episode.payload 5", "--physics reference", "--change '1: payload=5'", "--compare-frozen"),
+    *("--fall-seconds 5", "--push_seconds 5", "--log it.mcap", "--episode.push.newtons 20"),
+)
+
+
+def test_what_has_no_effect_on_a_robot_that_runs_by_itself_is_named(answer: Answer) -> None:
+    for option in HAS_NO_EFFECT:
+        name = shlex.split(option)[0].replace("_", "-")
+        words = f"{name} has no effect on a robot that runs by itself: leave it or --robot out"
+        assert words in answer(f"sarah-operate --robot tcp/127.0.0.1:9 {option}")
+    assert "no robot listens at tcp/127.0.0.1:9" in answer("sarah-operate --robot tcp/127.0.0.1:9 --seed 3")
+    assert "it needs --robot" in answer("sarah-operate --gone-seconds 5")
+    for line, words in (
+        ("sarah-robot --lockstep", "it needs --listen"),
+        ("sarah-robot --lockstep --listen --real-time", "leave out --lockstep or --real-time"),
+    ):
+        assert words in answer(line)
+
+
+def test_a_robot_that_measures_no_windows_is_no_robot_to_operate(tmp_path: Path, answer: Answer) -> None:
+    endpoint = Endpoint(f"tcp/127.0.0.1:{free_port()}")
+    with robot(endpoint):
+        assert "this robot does not say what it is" in answer(f"sarah-operate --robot {endpoint.address}")
