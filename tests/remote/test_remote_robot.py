@@ -131,6 +131,7 @@ def test_a_window_that_is_lost_is_asked_for_again_and_the_learner_says_why() -> 
         "the robot has gone",
         "no robot listens",
         "busy: a learner operates the robot",
+        "the robot has the parameters of window 0",
         "stopped: asked to stand",
         "it stands",
         "the robot has the parameters of window 0",
