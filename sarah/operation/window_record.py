@@ -39,8 +39,8 @@ class FeltRecord:
         self._odometry = LegOdometry(height, self._dt)
         self._ticks = 0
         self._from: tuple[float, float] | None = None
-        self._readings: list[tuple[float, ...]] = []
-        self._lags: list[list[float]] = []
+        self._signals, self._lags = np.zeros((measure, 8)), np.zeros((measure, 6))
+        self._heard = 0
         self._phases: dict[Phase, list[int]] = {Phase.SHIFT: [], Phase.LIFT: [], Phase.LAND: []}
         self._phase_began = 0
 
@@ -59,8 +59,10 @@ class FeltRecord:
         if self._ticks >= self._settle:
             left_fore, left_hind, right_fore, right_hind = reading.pressures
             loads = (left_fore + left_hind, right_fore + right_hind)
-            self._readings.append((*reading.acceleration, *reading.angular_rate, *loads))
-            self._lags.append([abs(target - joint) for target, joint in zip(targets, reading.joints, strict=True)])
+            self._signals[self._heard] = (*reading.acceleration, *reading.angular_rate, *loads)
+            lags = [abs(target - joint) for target, joint in zip(targets, reading.joints, strict=True)]
+            self._lags[self._heard] = lags
+            self._heard += 1
 
     def decided(self, change: PhaseChange | None) -> None:
         """Record the end of a phase.
@@ -94,10 +96,10 @@ class FeltRecord:
 
         A phase that never ended lasted as long as the window.
         """
-        if not self._readings:
+        if not self._heard:
             return (0.0,) * len(FELT)
-        signals = np.array(self._readings)
-        lags = np.array(self._lags).mean(axis=0).reshape(3, 2).mean(axis=1)
+        signals = self._signals[: self._heard]
+        lags = self._lags[: self._heard].mean(axis=0).reshape(3, 2).mean(axis=1)
         seconds = [self._dt * (sum(ticks) / len(ticks) if ticks else self._measure) for ticks in self._phases.values()]
         values = (
             *signals[:, :6].mean(axis=0),

@@ -116,7 +116,8 @@ class Request:
         if bool(self.values) != (self.kind in WITH_VALUES):
             raise ConfigurationError(f"a request to {self.kind} has {'no' if self.values else 'to have'} values")
         if (self.window is not None) != (self.kind == "window"):
-            raise ConfigurationError(f"the key window is for requests of kind window, which have it, not {self.kind}")
+            has = "to have a" if self.window is None else "no"
+            raise ConfigurationError(f"a request to {self.kind} has {has} window")
         if len(self.learner) > LONGEST_LEARNER or (self.kind == "window" and not self.learner):
             raise ConfigurationError(f"learner must be a name of 1 to {LONGEST_LEARNER} characters")
         checked = Box(tuple(BY_NAME[name] for name in self.values)).checked(list(self.values.values()))

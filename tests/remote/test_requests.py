@@ -16,7 +16,7 @@ from sarah.control.constants import ControllerConstants
 from sarah.errors import RobotError, SarahError
 from sarah.operation.settings import PARAMETERS
 from sarah.remote.answers import Answer, Outcome, from_json, to_json
-from sarah.remote.requests import LARGEST_BYTES, LearnedWith, Request, read_request
+from sarah.remote.requests import LARGEST_BYTES, LearnedWith, Request, WindowTimes, read_request
 from sarah.robot.dimensions import all_dimensions
 
 SCHEMA = json.loads(Path(sarah.remote.__file__).with_name("request.schema.json").read_text())
@@ -26,17 +26,25 @@ VALID: dict[str, Any] = {
     "values": {"P1": 0.4, "V4": -2},
     "learned_with": {"controller": {"pad_threshold": 20.0}, "control_rate": 100, "dimensions": {"torso_mass": 12.0}},
 }
+WINDOW: dict[str, Any] = {
+    "schema": 1,
+    "kind": "window",
+    "values": {"P1": 0.4},
+    "window": {"settle_seconds": 2.0, "measure_seconds": 4},
+    "learner": "mine",
+}
 
 
 def test_a_request_comes_back_from_json() -> None:
     every = {parameter.name: parameter.high for parameter in PARAMETERS}
-    for request in (Request("state"), Request("push", every, LearnedWith(dimensions={"torso_mass": 12.0}))):
+    window = Request("window", every, window=WindowTimes(0.0, 0.5), learner="mine")
+    for request in (Request("state"), window, Request("push", every, LearnedWith(dimensions={"torso_mass": 12.0}))):
         assert read_request(request.to_json()) == request and len(request.to_json()) < LARGEST_BYTES
         jsonschema.validate(json.loads(request.to_json()), SCHEMA)
 
 
-def changed(change: Callable[[dict[str, Any]], Any]) -> bytes:
-    content = json.loads(json.dumps(VALID))
+def changed(change: Callable[[dict[str, Any]], Any], valid: dict[str, Any] = VALID) -> bytes:
+    content = json.loads(json.dumps(valid))
     change(content)
     return json.dumps(content).encode()
 
@@ -73,6 +81,19 @@ def changed(change: Callable[[dict[str, Any]], Any]) -> bytes:
         (changed(lambda it: it["learned_with"].update(dimensions=[])), "dimensions must hold names and numbers"),
         (changed(lambda it: it["learned_with"]["dimensions"].update(torso=1.0)), "unknown robot dimension 'torso'"),
         (changed(lambda it: it["learned_with"]["controller"].update(pads=1)), "unknown key 'controller.pads'"),
+        (changed(lambda it: it["window"].update(settle_seconds=61), WINDOW), "window.settle_seconds must be between"),
+        (
+            changed(lambda it: it["window"].update(measure_seconds="4"), WINDOW),
+            "window.measure_seconds must be a number",
+        ),
+        (changed(lambda it: it["window"].update(measure=4), WINDOW), "unknown key 'window.measure', did you mean"),
+        (changed(lambda it: it.update(window=None), WINDOW), "window must hold keys and values, not None"),
+        (changed(lambda it: it.update(kind="push"), WINDOW), "a request to push has no window"),
+        (changed(lambda it: it.pop("window"), WINDOW), "a request to window has to have a window"),
+        (changed(lambda it: it.pop("values"), WINDOW), "a request to window has to have values"),
+        (changed(lambda it: it.pop("learner"), WINDOW), "learner must be a name of 1 to 64 characters"),
+        (changed(lambda it: it.update(learner="x" * 65), WINDOW), "learner must be a name of 1 to 64 characters"),
+        (changed(lambda it: it.update(learner=7), WINDOW), "learner must be a name of 1 to 64 characters, not 7"),
     ],
 )
 def test_a_wrong_request_is_refused_with_one_line(message: bytes, reason: str) -> None:
@@ -93,12 +114,17 @@ PIECES = st.recursive(
     ),
     max_leaves=5,
 )
-PATHS = [("schema",), ("kind",), ("values",), ("values", "P1"), ("learned_with",), ("learned_with", "control_rate")]
+SHARED = (("schema",), ("kind",), ("values",), ("values", "P1"))
+PATHS = [(VALID, path) for path in (*SHARED, ("learned_with",), ("learned_with", "control_rate"))]
+PATHS += [(WINDOW, path) for path in (*SHARED, ("window",), ("window", "settle_seconds"), ("learner",))]
 
 
 @given(st.sampled_from(PATHS), PIECES, st.booleans())
-def test_the_document_and_the_robot_accept_the_same(path: tuple[str, ...], piece: Any, is_gone: bool) -> None:
-    content = json.loads(json.dumps(VALID))
+def test_the_document_and_the_robot_accept_the_same(
+    place: tuple[dict[str, Any], tuple[str, ...]], piece: Any, is_gone: bool
+) -> None:
+    whole, path = place
+    content = json.loads(json.dumps(whole))
     inner = content
     for name in path[:-1]:
         inner = inner[name]
