@@ -157,7 +157,7 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
         stack.callback(loop.driver.close)
         server = meter = None
         if options.listen is not None:
-            meter = _meter(spec, loop)
+            meter = None if options.read_only else _meter(spec, loop)
             server = stack.enter_context(contextlib.closing(_server(options, spec, meter, is_interrupted)))
             loop.observers = (*loop.observers, server)
         if options.driver is None:
@@ -209,7 +209,9 @@ def _log_window(log: RobotLog, numbers: Iterator[int], dt: float, parameters: Pa
     log.window(window.end, window.plain())
 
 
-def _server(options: RobotOptions, spec: EpisodeSpec, meter: Meter, is_interrupted: Callable[[], bool]) -> Server:
+def _server(
+    options: RobotOptions, spec: EpisodeSpec, meter: Meter | None, is_interrupted: Callable[[], bool]
+) -> Server:
     """What lets others reach the robot."""
     assert options.listen is not None
     server = Server(
@@ -217,9 +219,12 @@ def _server(options: RobotOptions, spec: EpisodeSpec, meter: Meter, is_interrupt
         LearnedWith.of(spec.config),
         Slot(spec.config.physics.control_dt, options.largest_change, meter),
         identity_of(
-            spec.config, options.driver or _simulated(options, spec), options.lockstep, meter.truth is not None
+            spec.config,
+            options.driver or _simulated(options, spec),
+            options.lockstep,
+            meter is not None and meter.truth is not None,
         ),
-        lambda: options.lockstep and not is_interrupted(),
+        lambda: options.lockstep and not is_over(),
     )
     print(f"listening at {options.listen}", file=sys.stderr)
     return server

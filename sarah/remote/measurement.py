@@ -92,9 +92,10 @@ class Measurement:
         return None
 
     def _note(self, moment: Moment) -> None:
-        """Keep in mind what the supervisor did, but for the beginning of stepping."""
+        """Keep in mind what the supervisor did, but for what follows by itself: it stands, and steps again."""
         change = moment.supervisor.state_change
-        if change is not None and (change.state, change.before) != (State.STEPPING, State.STANDING):
+        follows = ((State.STOPPING, State.STANDING), (State.STANDING, State.STEPPING))
+        if change is not None and (change.before, change.state) not in follows:
             words = change.reason if change.reason.startswith(PUT_BACK) else f"{change.state.value}: {change.reason}"
             self._reasons.append(words)
 
