@@ -209,9 +209,7 @@ def _log_window(log: RobotLog, numbers: Iterator[int], dt: float, parameters: Pa
     log.window(window.end, window.plain())
 
 
-def _server(
-    options: RobotOptions, spec: EpisodeSpec, meter: Meter | None, is_interrupted: Callable[[], bool]
-) -> Server:
+def _server(options: RobotOptions, spec: EpisodeSpec, meter: Meter | None, is_over: Callable[[], bool]) -> Server:
     """What lets others reach the robot."""
     assert options.listen is not None
     server = Server(
