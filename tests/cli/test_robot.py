@@ -81,7 +81,7 @@ def test_a_signal_lets_it_stop_and_stand(own: Path) -> None:
     scheduler = os.sched_getscheduler(0)
     process = done("sarah-robot", "balance", "--driver", "my_robot.py:ROBOT", "--real-time", cwd=own.parent)
     said = [line.split(" s  ")[1] for line in process.stdout.splitlines() if " s  " in line]
-    assert said[1:] == ["stopping: asked to stand", "standing: stopped"]
+    assert said[1:] == ["stopping: asked to stand", "standing: stopped: asked to stand"]
     assert "off after 15" in process.stdout and ", 0 steps\n" in process.stdout and "later than 2 ms" in process.stdout
     assert "SCHED_FIFO" in process.stderr or "not granted" in process.stderr
     assert os.sched_getscheduler(0) == scheduler
