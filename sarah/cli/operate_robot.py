@@ -83,7 +83,10 @@ def config_for(found: Identity, subject: LearnedWith | None, **times: Any) -> Op
     robot = settings_of(found)
     difference = "" if subject is None else subject.difference(LearnedWith.of(robot))
     if difference:
-        raise ConfigurationError(f"learned with another robot or controller: {difference}")
+        raise ConfigurationError(
+            f"the first parameters were learned with another robot or controller ({difference}): name a run folder of "
+            "this robot, or numbers"
+        )
     return OperationConfig(robot=robot, fall_seconds=0.0, **times)
 
 

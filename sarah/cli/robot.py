@@ -51,8 +51,8 @@ STOP_SECONDS = 1.0
 """Time that a robot has to stop in the end, in s; it takes some tenths."""
 OF_SIMULATION = ("--engine", "--physics", "--seed")
 """Options of the simulated robot alone."""
-ANYWHERE = 100.0
-"""Displacement at which the simulated robot ends, in m: it may go where it wants."""
+ANYWHERE = 20.0
+"""Displacement at which the default robot ends, in m: it may go where it wants. It goes with the robot's length."""
 
 
 @dataclass(frozen=True)
