@@ -17,7 +17,7 @@ from sarah.cli.former_names import say_present, with_out
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.next_steps import say_next, to_see, to_watch
 from sarah.cli.operate_robot import check_effect, config_for, operate_robot, robot_found
-from sarah.cli.operate_text import summarise, watched
+from sarah.cli.operate_text import COMMAND, summarise, watched
 from sarah.cli.operated import OperatedConfig, say_differences, settings_in_operation, times_of_session
 from sarah.cli.options import as_command, named_task, say_engine
 from sarah.cli.subjects import episode_of, is_shipped
@@ -41,7 +41,6 @@ if TYPE_CHECKING:
     from sarah.runs.session_folder import SessionFolder
     from sarah.training.operate import SessionResult
 
-COMMAND = "sarah-operate"
 WITHOUT_EFFECT = ("--episode.time-limit", "--episode.reward-form", "--episode.push.at-seconds")
 """Options of episodes that an operation, which goes on and is pushed again and again, does not know."""
 

@@ -4,6 +4,8 @@ from typing import Any
 
 import pytest
 from hand_made import BALANCE, DT, heard
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import SteppingParameters
@@ -26,8 +28,8 @@ class Rig:
     """A slot with a meter in a loop, whose supervisor hears a robot that rocks from foot to foot once it has stood."""
 
     def __init__(self) -> None:
-        settings = SupervisorSettings(enabled=True)
-        self.supervisor = Supervisor(SteppingParameters(*PAPER_STEPPING), BALANCE, DT, settings=settings)
+        enabled = SupervisorSettings(enabled=True)
+        self.supervisor = Supervisor(SteppingParameters(*PAPER_STEPPING), BALANCE, DT, settings=enabled)
         self.now = 0.0
         self.slot = Slot(DT, 1.0, Meter(PushedConfig()), lambda: self.now)
         self.ticks = 0
@@ -166,3 +168,27 @@ def test_a_robot_without_a_meter_measures_nothing() -> None:
     rig.slot = Slot(DT)
     (answer,) = rig.ask(V1=0.5)
     assert isinstance(answer, Answer) and answer.reason == "this robot measures no windows"
+
+
+EVENTS = ("one", "one", "two", "push", "stand", "step", "still", "gone", "late", "nothing")
+
+
+@settings(max_examples=20)
+@given(st.lists(st.sampled_from(EVENTS), max_size=25))
+def test_whoever_asks_gets_one_last_answer_whatever_happens(events: list[str]) -> None:
+    rig, asked = Rig(), list[list[Any]]()
+    rig.step(150)
+    for event in events:
+        if event in ("one", "two"):
+            asked.append(rig.ask(learner=event, V1=round(0.01 * len(asked), 2)))
+        elif event in ("push", "stand", "step"):
+            asked.append(rig.ask(event, **({"V1": round(0.01 * len(asked), 2)} if event == "push" else {})))
+        elif event == "late":
+            rig.now += LEARNER_SECONDS
+        rig.step(70, still=event == "still", gone=event == "gone")
+    rig.slot.close("the end")
+    for answers in asked:
+        is_last = [isinstance(one, Measured) or one.is_final for one in answers]
+        assert sum(is_last) == 1 and is_last[-1]
+    windows = [one for answers in asked for one in answers if isinstance(one, Measured)]
+    assert all(0 < window.ticks <= 400 and 0.0 <= window.observed_reward <= 1.0 for window in windows)
