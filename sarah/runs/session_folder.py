@@ -124,6 +124,8 @@ class SessionFolder(Folder):
         settings = settings_by_key(spec)
         settings["config.minutes"] = spec.config.stages[0]
         del settings["config.extended_from"]  # the journal has a row for each extension
+        if (robot := self.robot) is not None:
+            settings["robot"] = robot.robot
         return self.journal(settings, MOST_WINDOWS)
 
     def spec(self) -> SessionSpec:

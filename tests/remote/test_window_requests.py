@@ -181,8 +181,10 @@ def test_whoever_asks_gets_one_last_answer_whatever_happens(events: list[str]) -
     for event in events:
         if event in ("one", "two"):
             asked.append(rig.ask(learner=event, V1=round(0.01 * len(asked), 2)))
-        elif event in ("push", "stand", "step"):
-            asked.append(rig.ask(event, **({"V1": round(0.01 * len(asked), 2)} if event == "push" else {})))
+        elif event == "push":
+            asked.append(rig.ask("push", V1=round(0.01 * len(asked), 2)))
+        elif event in ("stand", "step"):
+            asked.append(rig.ask(event))
         elif event == "late":
             rig.now += LEARNER_SECONDS
         rig.step(70, still=event == "still", gone=event == "gone")

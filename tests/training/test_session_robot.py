@@ -10,7 +10,7 @@ from operated import KEPT, interrupted_after, quick
 
 from sarah.cli.operate_text import summarise
 from sarah.control.parameters import BALANCE_PARAMETERS
-from sarah.errors import TrainingInterruptedError
+from sarah.errors import ResumeError, TrainingInterruptedError
 from sarah.operation.window import FELT
 from sarah.remote.answers import Answer, Measured, Outcome
 from sarah.remote.remote_robot import RemoteRobot
@@ -82,3 +82,6 @@ def test_it_goes_on_where_the_robot_is_and_asks_for_no_known_window_again(tmp_pa
     assert [request.kind for request in robot.requests] == ["window"] * (len(whole.windows) - 4) + ["push"]
     for name in KEPT:
         assert (tmp_path / "it" / name).read_bytes() == (tmp_path / "whole" / name).read_bytes(), name
+    (tmp_path / "it/robot.yaml").unlink()
+    with pytest.raises(ResumeError, match=r"robot is not known here, and my_robot.py:ROBOT in this session"):
+        run(tmp_path / "it", robot)
