@@ -124,6 +124,8 @@ class SimulatedRobot(Driver):
                 self._targets = towards(STANDING_TARGETS, self._targets, self._constants, self._dt)
             self._change = None
             self._advance()
+            if self._goes_on and (self._ticks - sent) * self._dt >= self.episode.config.time_limit:
+                self.ended = "time_limit"  # there are no ticks any more
         return self._sensed()
 
     def send(self, targets: Targets) -> None:
@@ -194,7 +196,8 @@ class SimulatedRobot(Driver):
     def _sensed(self) -> TimedReading | None:
         """Reading that the controller hears."""
         if self.ended or not self.episode.robot.sense():
-            self.ended = "" if self._goes_on else self.episode.termination or ""
+            if not self._goes_on:
+                self.ended = self.episode.termination or ""
             return None
         reading, since = self.episode.robot.last_reading, self._ticks - self._first_wrong
         if self._heard is None or since < 0:

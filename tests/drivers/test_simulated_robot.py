@@ -173,3 +173,13 @@ def test_one_that_goes_on_is_put_up_after_a_fall_and_steps_again_when_it_is_aske
                 loop.controller.step()
     assert not any(lay[:200]) and any(lay) and not any(lay[600:])
     assert states[250] is State.FALLEN and states[-1] is State.STEPPING and robot.position[2] > 0.5
+
+
+def test_one_that_goes_on_ends_when_there_are_no_ticks_any_more() -> None:
+    need("mujoco")
+    plan = FaultPlan(FAULTS["no tick any more, targets stay"], 0.1)
+    config = supervised(BalanceConfig(engine="mujoco", time_limit=1.5))
+    robot, loop = simulated_loop(EpisodeSpec(V, 3, BALANCE, config), plan, goes_on=True)
+    with contextlib.closing(robot):
+        loop.run()
+    assert loop.ticks == 110 and robot.ended
