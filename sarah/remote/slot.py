@@ -139,12 +139,13 @@ class Slot:
         """Stand or step, or put parameters into the slot."""
         supervisor, kind = moment.supervisor, asked.request.kind
         if kind == "stand":
+            self._is_held = True
             if supervisor.has_fallen:
-                asked.reply(moment.answer(Outcome.REFUSED, "the robot has fallen"))
+                words = "the robot has fallen: it does not step before sarah-push --step"
+                asked.reply(moment.answer(Outcome.REFUSED, words))
                 return
             if not supervisor.is_waiting:
                 supervisor.stand()
-            self._is_held = True
             asked.reply(moment.answer(Outcome.APPLIED))
         elif kind == "step":
             if not supervisor.is_waiting:

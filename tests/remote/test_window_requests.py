@@ -42,9 +42,12 @@ class Rig:
         self.step(1, Asked(request, answers.append))
         return answers
 
-    def step(self, ticks: int, *arrived: Asked, still: bool = False, gone: bool = False) -> None:
+    def step(self, ticks: int, *arrived: Asked, still: bool = False, gone: bool = False, lies: bool = False) -> None:
         for _ in range(ticks):
-            reading: SensorReading | None = None if gone else heard(self.ticks, still)
+            reading: SensorReading | None = None if gone else heard(self.ticks, still or lies)
+            if reading is not None and lies:
+                x, y, z = reading.acceleration
+                reading = reading._replace(acceleration=(x, y + 9.0, z - 8.0))
             change = self.supervisor.tick(reading)
             self.slot.tick(
                 LoopTick(self.ticks * DT, reading, 0.0, self.supervisor, change, 0.0), self.supervisor, arrived
@@ -140,6 +143,26 @@ def test_the_robot_is_its_learners_until_that_is_silent_or_leaves_it(rig: Rig) -
     one = rig.ask(V1=0.5)
     rig.step(400)
     assert outcomes(left) == ["applied", "overtaken"] and outcomes(one)[-1] == "window"
+
+
+@pytest.mark.parametrize("somebody_objects", [False, True])
+def test_a_robot_that_fell_steps_again_once_it_has_been_upright_and_nobody_objects(
+    rig: Rig, somebody_objects: bool
+) -> None:
+    answers = rig.ask(V1=0.5)
+    rig.step(200, lies=True)
+    assert outcomes(answers) == ["applied", "window"] and answers[1].fell and rig.supervisor.has_fallen
+    if somebody_objects:
+        assert outcomes(rig.ask("stand")) == ["refused"]
+    again = rig.ask(V1=0.5)
+    rig.step(150, still=True)
+    assert outcomes(again) == ["waiting"] and rig.supervisor.has_fallen
+    if somebody_objects:
+        rig.step(600, still=True)
+        assert set(outcomes(again)) == {"waiting"} and rig.supervisor.has_fallen
+        rig.ask("step")
+    rig.step(900, still=True)
+    assert outcomes(again)[-2:] == ["applied", "window"]
 
 
 class Lying:
