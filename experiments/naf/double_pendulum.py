@@ -15,7 +15,7 @@ from experiments.experiment import Experiment, product
 from experiments.naf.learners import PUBLISHED, course
 from experiments.record import Row
 from experiments.shapes import groups
-from experiments.tables import share_of, shown, span, table
+from experiments.tables import share_of, shown, so_far, span, table
 
 TASK = "InvertedDoublePendulum-v5"
 LIMIT = 1.0
@@ -55,12 +55,13 @@ def answer(rows: DataFrame) -> str:
     found = groups(ends(rows), "algorithm")
     naf, published = found["NAF"], found[PUBLISHED]
     above = share_of(int((published.v_over_bound > LIMIT).sum()), len(published), "trainings")
+    seeds = so_far(min(len(naf), len(published)), FULL.seeds)
     medians = [shown(of["return"].median(), ".0f") for of in (published, naf)]
     return (
         f"As published, V exceeds what rewards allow within {FULL.steps:,} steps in {above}: it comes to "
         f"{span(published.v_over_bound, '.2f')} times its bound. With W in the targets it comes to "
         f"{shown(naf.v_over_bound.max(), '.2f')} at most. The median return is then {medians[0]} as published and "
-        f"{medians[1]} with W."
+        f"{medians[1]} with W (seeds: {seeds})."
     )
 
 

@@ -21,7 +21,7 @@ from experiments.interquartile import interquartile_mean
 from experiments.naf.learners import EVALUATION_SEED
 from experiments.record import Row
 from experiments.shapes import groups
-from experiments.tables import shown, table
+from experiments.tables import shown, so_far, table
 from sarah.agents import NAF
 from sarah.agents.losses import nearby_weights
 
@@ -97,7 +97,7 @@ def _of_kinds(rows: DataFrame) -> DataFrame:
     """A row for each kind of training: interquartile means of its seeds."""
     found: list[Row] = []
     for (task, std, buffer), of in groups(rows, "task", "exploration_std", "buffer").items():
-        about = {"task": task, "exploration_std": std, "buffer": buffer, "seeds": len(of)}
+        about = {"task": task, "exploration_std": std, "buffer": buffer, "seeds": so_far(len(of), FULL.seeds)}
         columns = ("return", "discounted_return", "w", "effective_share")
         found.append({**about, **{column: interquartile_mean(of[column])[0] for column in columns}})
     return DataFrame(found)

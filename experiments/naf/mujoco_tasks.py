@@ -23,7 +23,7 @@ from experiments.interquartile import improvement, interquartile_mean
 from experiments.naf.learners import COMPARED, WITH_NAFS_SETTINGS, WITHOUT, course
 from experiments.record import Row
 from experiments.shapes import groups, line_panels
-from experiments.tables import shown, table
+from experiments.tables import shown, so_far, table
 
 RECENT = 3
 """Number of evaluations that are the end of a training: one alone says little, as returns swing."""
@@ -97,11 +97,6 @@ def ends(rows: DataFrame) -> DataFrame:
     return last.agg({"steps": "max", "return": "mean", "v_over_bound": "max"}).reset_index()
 
 
-def so_far(made: int) -> str:
-    """Number of seeds, in words while some are still to be made."""
-    return str(made) if made == len(SEEDS) else f"{made} of {len(SEEDS)} so far"
-
-
 def answer(rows: DataFrame) -> str:
     """How NAF does next to each of the other algorithms, and how near V comes to its bound."""
     found = ends(rows[rows.seed.isin(SEEDS)])
@@ -131,7 +126,7 @@ def _compared(naf: DataFrame, others: DataFrame, name: str) -> str:
     fewest = min(len(found[task]) for found in (ones, of_others) for task in tasks)
     return (
         f"After {STEPS:,} steps NAF is {listed}; a seed of NAF is above one of {name} with a probability of {middle} "
-        f"({' to '.join(ends_of_it)}; seeds: {so_far(fewest)})."
+        f"({' to '.join(ends_of_it)}; seeds: {so_far(fewest, len(SEEDS))})."
     )
 
 
@@ -154,7 +149,7 @@ def _means(rows: DataFrame, *more: str) -> DataFrame:
     for values, of in groups(rows, *keys).items():
         mean, *interval = interquartile_mean(of["return"])
         low, high = interval if len(of) >= FEWEST else (None, None)
-        about = {**dict(zip(keys, values, strict=True)), "seeds": so_far(len(of))}
+        about = {**dict(zip(keys, values, strict=True)), "seeds": so_far(len(of), len(SEEDS))}
         ratio = of.v_over_bound.max()
         found.append({**about, "return": mean, "return_low": low, "return_high": high, "v_over_bound": ratio})
     orders = {"task": TASKS, "algorithm": (*COMPARED, *WITHOUT, *WITH_NAFS_SETTINGS)}
