@@ -16,18 +16,29 @@ def nearby_loss(values: Values, targets: th.Tensor) -> th.Tensor:
     """
     Loss of ``W``, by which it becomes the mean of the targets of actions near ``mu``.
 
-    An action whose squared distance from ``mu`` is the batch's mean counts by a factor of e less than ``mu`` itself. A
-    share of the weight is spread evenly: where nobody acts near ``mu``, ``W`` would otherwise follow no target at all.
     Whatever the weights, a mean is never above the largest target. The network may be, in states that it hardly knows.
 
     :param values: Values of replayed actions
     :param targets: What these actions led to
     :return: Mean squared error of ``W``, weighted by the nearness of the actions
     """
-    distances = values.distance.detach()
-    weights = th.softmax(distances / (-distances.mean() - 1e-8), dim=0)
-    weights = (1 - EVEN_SHARE) * weights + EVEN_SHARE / len(weights)
+    weights = nearby_weights(values.distance.detach())
     return (weights * (values.target - targets).square()).sum()
+
+
+def nearby_weights(distances: th.Tensor) -> th.Tensor:
+    """
+    Weights of replayed actions in the loss of ``W``.
+
+    An action whose squared distance from ``mu`` is the batch's mean counts by a factor of e less than ``mu`` itself. A
+    share of the weight is spread evenly: where nobody acts near ``mu``, ``W`` would otherwise follow no target at all.
+    With many actions all distances are nearly the batch's mean, and so the weights are nearly even.
+
+    :param distances: Squared distances of the actions from ``mu``, of shape (batch, 1)
+    :return: Weights of the same shape, whose sum is 1
+    """
+    weights = th.softmax(distances / (-distances.mean() - 1e-8), dim=0)
+    return (1 - EVEN_SHARE) * weights + EVEN_SHARE / len(weights)
 
 
 def centre_loss(values: Values, q_loss: th.Tensor, n_transitions: int) -> th.Tensor:

@@ -12,7 +12,6 @@ ONE_ACTION = "targets take W or V of the next state, and neither needs an action
 NO_ENTROPY = "mu is one action and has no entropy, and exploration_std sets how widely it explores"
 GAUSSIAN = "exploration is Gaussian noise, and exploration_std sets its width, by a number or a schedule"
 OF_POLICY = "it goes into policy_kwargs"
-OF_LOCAL_NAF = "only LocalNAF has it"
 WHY_NOT = {
     "policy_delay": "there is no actor to delay, as mu is part of Q",
     "target_policy_noise": ONE_ACTION,
@@ -26,9 +25,9 @@ WHY_NOT = {
     "use_sde": GAUSSIAN,
     "target_update_interval": "the target network follows in every update, by tau",
     **dict.fromkeys(("net_arch", "activation_fn", "dropout", "squash_mu", "min_curvature"), OF_POLICY),
-    **dict.fromkeys(("elite_share", "elite_std", "elite_draws", "first_action_centre"), OF_LOCAL_NAF),
 }
 """Reason why NAF has no such argument, by the name that it has elsewhere."""
+WHY_NOT |= dict.fromkeys(("elite_share", "elite_std", "elite_draws", "first_action_centre"), "only LocalNAF has it")
 
 
 def explains_unknown(init: Callable[P, None]) -> Callable[P, None]:

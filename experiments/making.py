@@ -8,7 +8,7 @@ import re
 import shlex
 import sys
 import time
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
 
@@ -109,9 +109,8 @@ def _begun(module: ModuleType, folder: Path, command: str) -> Result:
     commit = record.commit()
     if commit == record.UNKNOWN:
         print("without a git history the result cannot tell its commit", file=sys.stderr)
-    used = ", ".join(f"{name} {version}" for name, version in versions().items())
     name, question = module.__name__.rpartition(".")[2], first_line(module.__doc__)
-    new = Result(name, question, command, commit, time.strftime("%Y-%m-%d"), 0.0, versions=used)
+    new = Result(name, question, command, commit, time.strftime("%Y-%m-%d"), 0.0, versions=_listed(versions()))
     if name not in record.names(folder):
         return new
     before = record.read(name, folder)
@@ -120,7 +119,15 @@ def _begun(module: ModuleType, folder: Path, command: str) -> Result:
     commits = " ".join(dict.fromkeys([*before.commit.split(), commit]))
     print(f"goes on after {len(before.rows)} rows", file=sys.stderr)
     of_rows = {key: getattr(before, key) for key in ("minutes", "tree", "remark", "rows")}  # true of those that stay
-    return dataclasses.replace(new, commit=commits, **of_rows)
+    used = _listed(versions(), dict(word.split(maxsplit=1) for word in before.versions.split(", ") if word))
+    return dataclasses.replace(new, commit=commits, versions=used, **of_rows)
+
+
+def _listed(used: Mapping[str, str], before: Mapping[str, str] | None = None) -> str:
+    """Versions in words; where rows of before were made with another one, that stands first."""
+    known = {name: version.split(" and ") for name, version in (before or {}).items()}
+    every = {name: dict.fromkeys([*known.get(name, ()), used.get(name, "none")]) for name in {**known, **used}}
+    return ", ".join(f"{name} {' and '.join(those)}" for name, those in every.items())
 
 
 def _compute(experiment: Experiment, cases: Sequence[Row], result: Result, folder: Path) -> None:

@@ -50,9 +50,9 @@ class Result:
 
     @property
     def made_at(self) -> str:
-        """When the rows were made, and at which commit, in words."""
+        """When the last rows were made, and at which commits all of them, in words."""
         dirty = " with uncommitted changes" if self.tree else ""
-        return f"Made at {self.commit.split()[-1]}{dirty} on {self.date}"
+        return f"Made at {' and '.join(self.commit.split())}{dirty} on {self.date}"
 
     @property
     def table(self) -> DataFrame:

@@ -104,6 +104,11 @@ def share_of(count: int, total: int, what: str) -> str:
     return f"all {total} {what}" if count == total else f"{count} of {total} {what}"
 
 
+def so_far(made: int, planned: int) -> str:
+    """How many of some seeds, in words while some are still to be made: ``5``, or ``3 of 5 so far``."""
+    return str(made) if made == planned else f"{made} of {planned} so far"
+
+
 def span(values: Series[Any], spec: str) -> str:
     """The lowest and the highest of some values, as words."""
     low, high = shown(values.min(), spec), shown(values.max(), spec)

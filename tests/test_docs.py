@@ -9,13 +9,16 @@ import sys
 from collections.abc import Iterator
 from dataclasses import astuple, replace
 from importlib import import_module
+from inspect import signature
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from pytest import CaptureFixture, MonkeyPatch
 
+from sarah.agents import NAF
 from sarah.control.hip_law import BalanceParameters
 from sarah.episode.episode import simulate
 from sarah.episode.parameter_sets import PARAMETER_SETS
@@ -266,6 +269,18 @@ def test_naf_learns_the_environment_of_the_page_and_goes_on(
     rewards = [plain.step([0.2])[1] for _ in range(4)]
     assert held.step([0.2])[1] == pytest.approx(np.mean(rewards))
     assert larger.step(np.array([0.9], np.float32))[1] == pytest.approx(cut.step([1.0])[1])
+
+
+def test_naf_takes_the_arguments_of_the_page_on_rl_zoo() -> None:
+    (text,) = blocks("how_to/rl_zoo.md", "yaml")
+    for name, arguments in yaml.safe_load(text).items():
+        assert arguments.pop("n_timesteps") > 0
+        policy_kwargs = eval(arguments.pop("policy_kwargs", "dict()"))
+        NAF(env="Pendulum-v1" if name == "default" else name, policy_kwargs=policy_kwargs, **arguments)
+    program = blocks("how_to/rl_zoo.md")[0]
+    tuned = re.findall(r'trial\.suggest_\w+\("(\w+)"', program)
+    made_of = {"one_minus_gamma": "gamma", "batch_size_pow": "batch_size", "net_arch": "policy_kwargs"}  # by RL Zoo
+    assert {made_of.get(name, name) for name in tuned} <= set(signature(NAF).parameters) and len(tuned) == 6
 
 
 def test_the_page_of_the_library_links_every_public_name() -> None:

@@ -5,68 +5,23 @@ Returns along trainings, with the defaults of each class.
 
 from __future__ import annotations
 
-import warnings
-from collections.abc import Iterator
+from collections.abc import Iterable
 from dataclasses import dataclass
-from typing import Any, ClassVar, NamedTuple
+from typing import ClassVar, NamedTuple
 
-import gymnasium as gym
-import numpy as np
-import torch as th
-from gymnasium import spaces
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
 from pandas import DataFrame
-from stable_baselines3 import DDPG, SAC, TD3
-from stable_baselines3.common.evaluation import evaluate_policy
-from stable_baselines3.common.monitor import Monitor
-from stable_baselines3.common.noise import NormalActionNoise
-from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 
 from experiments.experiment import Experiment
+from experiments.naf.learners import course
 from experiments.record import Row
 from experiments.shapes import groups, line_panels
 from experiments.tables import shown, table
-from sarah.agents import NAF
 
 RECENT = 3
 """Number of evaluations that are the end of a training: one alone says little, as returns swing."""
-EVALUATION_SEED = 10_000
-EXPLORATION_STD = {"NAF": 0.3, "NAF, noise of 0.5": 0.5, "NAF, noise of 0.9": 0.9}
-"""Standard deviation of the exploration noise of NAF; 0.3 is its default."""
-OTHERS: dict[str, type[OffPolicyAlgorithm]] = {"DDPG": DDPG, "TD3": TD3, "SAC": SAC}
-DOCUMENTED_STD = 0.1
-"""That of the noise in the documentation of TD3 and DDPG, whose classes have none by default."""
-
-
-class Watched(NAF):
-    """NAF that remembers how near its V came to the bound."""
-
-    highest_ratio = 0.0
-
-    def train(self, gradient_steps: int, batch_size: int = 100) -> None:
-        """Train, and look at the log."""
-        super().train(gradient_steps, batch_size)
-        self.highest_ratio = max(self.highest_ratio, self.logger.name_to_value["train/value_over_bound"])
-
-
-def agent(algorithm: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
-    """An agent that has learned nothing yet, with the defaults of its class."""
-    settings: dict[str, Any] = {"seed": seed, "device": "cpu"}
-    if algorithm in EXPLORATION_STD:
-        return Watched("MlpPolicy", env, exploration_std=EXPLORATION_STD[algorithm], **settings)
-    if algorithm != "SAC":
-        zeros = np.zeros(spaces.flatdim(env.action_space))
-        settings["action_noise"] = NormalActionNoise(zeros, np.full_like(zeros, DOCUMENTED_STD))
-    return OTHERS[algorithm]("MlpPolicy", env, **settings)
-
-
-def mean_return(model: OffPolicyAlgorithm, env: gym.Env, episodes: int) -> float:
-    """Mean return of evaluation episodes, the same for every agent."""
-    judged = Monitor(env)
-    judged.reset(seed=EVALUATION_SEED)
-    returns, _ = evaluate_policy(model, judged, episodes, return_episode_rewards=True)
-    return float(np.mean(returns))
+OTHERS = ("DDPG", "TD3", "SAC")
 
 
 class Trainings(NamedTuple):
@@ -110,24 +65,11 @@ class StandardTasks(Experiment):
         ]
         return sorted(cases, key=lambda case: case["seed"])
 
-    def rows(self, task: str, algorithm: str, seed: int) -> Iterator[Row]:
+    def rows(self, task: str, algorithm: str, seed: int) -> Iterable[Row]:
         """The course of a training."""
-        th.set_num_threads(1)
         of = TASKS[task]
-        steps = self.steps or of.steps
-        model, judged, course = agent(algorithm, gym.make(task), seed), gym.make(task), []
-
-        def evaluate(*_: Any) -> bool:
-            if model.num_timesteps % (steps // self.evaluations) == 0:
-                found = mean_return(model, judged, self.episodes or of.episodes)
-                ratio = getattr(model, "highest_ratio", None)
-                course.append({"steps": model.num_timesteps, "return": found, "v_over_bound": ratio})
-            return True
-
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")  # that V runs away is what the rows say
-            model.learn(steps, callback=evaluate)
-        yield from course
+        steps, episodes = self.steps or of.steps, self.episodes or of.episodes
+        return course(algorithm, task, seed, steps, self.evaluations, episodes)
 
 
 FULL = StandardTasks()

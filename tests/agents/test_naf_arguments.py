@@ -24,12 +24,14 @@ BAD: list[tuple[type[NAF], str, list[Any]]] = [
     (NAF, "buffer_size", [0, 1.5]),
     (NAF, "learning_starts", [-1, "a"]),
     (NAF, "gradient_steps", [-2, 1.5]),
+    (NAF, "policy_kwargs min_curvature", [-1.0, math.nan]),
+    (NAF, "policy_kwargs dropout", [-0.1, 1.0]),
+]
+BAD += [
     (LocalNAF, "elite_share", [-0.1, 1.5]),
     (LocalNAF, "elite_std", [-0.1, math.inf]),
     (LocalNAF, "elite_draws", [0, 2.5, True]),
     (LocalNAF, "replay_buffer_kwargs temperature", [-1.0, math.inf]),
-    (NAF, "policy_kwargs min_curvature", [-1.0, math.nan]),
-    (NAF, "policy_kwargs dropout", [-0.1, 1.0]),
 ]
 
 
@@ -49,18 +51,20 @@ def test_bad_numbers(algorithm, name, value):
         algorithm("MlpPolicy", "Pendulum-v1", **arguments)
 
 
-UNKNOWN = [
+UNKNOWN: list[tuple[type[NAF], dict[str, Any], str, str]] = [
     (NAF, {"learning_rat": 1e-3}, "NAF", "learning_rat', did you mean 'learning_rate'[?]"),
-    (LocalNAF, {"elite_shar": 0.5}, "LocalNAF", "elite_shar', did you mean 'elite_share'[?]"),
-    (NAF, {"elite_share": 0.5}, "NAF", "elite_share': only LocalNAF has it"),
     (NAF, {"net_arch": [8]}, "NAF", "net_arch': it goes into policy_kwargs"),
     (NAF, {"xyz": 1}, "NAF", "xyz', allowed are learning_rate, buffer_size, .*, seed, device"),
-    (LocalNAF, {"ent_coef": 0.1}, "LocalNAF", "ent_coef': mu is one action and has no entropy, .*"),
     (NAF, {"policy": "MlpPolicy", "env": "Pendulum-v1", "tua": 1}, "NAF", "tua', did you mean 'tau'[?]"),
     (NAF, {"policy_delay": 2}, "NAF", "policy_delay': there is no actor to delay, as mu is part of Q"),
     (NAF, {"policy_kwargs": {"dropot": 0.1}}, "NAFPolicy", "dropot', did you mean 'dropout'[?]"),
     (NAF, {"policy_kwargs": {"lr": 0.1}}, "NAFPolicy", "lr', allowed are net_arch, .*, dropout, min_curvature"),
     (NAF, {"policy_kwargs": {"n_critics": 1}}, "NAFPolicy", "n_critics': targets take W, a mean, .*"),
+]
+UNKNOWN += [
+    (LocalNAF, {"elite_shar": 0.5}, "LocalNAF", "elite_shar', did you mean 'elite_share'[?]"),
+    (NAF, {"elite_share": 0.5}, "NAF", "elite_share': only LocalNAF has it"),
+    (LocalNAF, {"ent_coef": 0.1}, "LocalNAF", "ent_coef': mu is one action and has no entropy, .*"),
 ]
 
 

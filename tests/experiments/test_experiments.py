@@ -123,6 +123,22 @@ def test_rows_of_before_keep_what_their_head_says(tmp_path: Path) -> None:
     assert (whole.tree, whole.remark, len(whole.rows)) == ("dirty", "Squares were rounder.", 6)
 
 
+def test_rows_are_made_in_pieces_at_several_commits_and_on_several_machines(
+    tmp_path: Path, monkeypatch: MonkeyPatch
+) -> None:
+    """The file is what a commit brings to another machine, where the project and its packages are newer."""
+    full = Squares(fails_at=1)
+    for number, torch in enumerate(("2.12", "2.13", "2.13"), start=1):
+        monkeypatch.setattr(record, "commit", lambda number=number: f"commit{number}")
+        monkeypatch.setattr("experiments.making.versions", lambda torch=torch: {"python": "3.11", "torch": torch})
+        result = made(tmp_path, full)
+        assert result.commit.split() == [f"commit{one}" for one in range(1, number + 1)]
+        full = Squares(fails_at=2) if number == 1 else Squares()
+    assert [row["number"] for row in result.rows] == ["0", "0", "1", "1", "2", "2"] and not result.missing
+    assert result.versions == "python 3.11, torch 2.12 and 2.13"
+    assert result.made_at.startswith("Made at commit1 and commit2 and commit3 on ")
+
+
 def test_another_command_begins_anew_and_cases_can_be_chosen(tmp_path: Path) -> None:
     for words in ("run squares", "run other squares"):
         begun = made(tmp_path, Squares(fails_at=1), command=words)

@@ -1,0 +1,1 @@
+"""NAF as a contribution to other packages, made from what is here."""

@@ -1,0 +1,193 @@
+"""Where does NAF stand among four algorithms on MuJoCo tasks, and what do its parts do there?
+
+The defaults of each class; NAF without its parts; TD3 and DDPG with settings of NAF; one long run of each algorithm.
+
+Sizes follow from speed: on one core of our machine NAF makes 130 steps per second, and DDPG, TD3 and SAC make 65 to 75.
+With 15,000 steps the comparison of the four takes five and a half core hours, the trainings of NAF's parts two, and
+those with NAF's settings one and a half. The runs of 300,000 steps take four more hours for one seed each, so they come
+last.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import dataclass
+from typing import ClassVar, NamedTuple
+
+from matplotlib.figure import Figure
+from matplotlib.ticker import EngFormatter
+from pandas import DataFrame
+
+from experiments.experiment import Experiment
+from experiments.interquartile import improvement, interquartile_mean
+from experiments.naf.learners import COMPARED, WITH_NAFS_SETTINGS, WITHOUT, course
+from experiments.record import Row
+from experiments.shapes import groups, line_panels
+from experiments.tables import shown, so_far, table
+
+RECENT = 3
+"""Number of evaluations that are the end of a training: one alone says little, as returns swing."""
+TASKS = ("HalfCheetah-v5", "Hopper-v5", "Walker2d-v5", "Reacher-v5", "Swimmer-v5")
+"""Tasks of Gu et al. (2016) that gymnasium has."""
+PART_TASKS = ("HalfCheetah-v5", "Walker2d-v5")
+SETTINGS_TASKS = (*PART_TASKS, "Swimmer-v5")
+STEPS = 15_000
+SEEDS = range(5)
+LONG_STEPS = 300_000
+LONG_SEED = 5
+FEWEST = 3
+"""Number of seeds below which an interval says nothing."""
+
+
+class Trainings(NamedTuple):
+    """Trainings of the same length."""
+
+    tasks: tuple[str, ...]
+    algorithms: tuple[str, ...]
+    steps: int = STEPS
+    seeds: Sequence[int] = SEEDS
+
+
+TRAININGS = (
+    Trainings(TASKS, ("NAF", "TD3", "SAC")),
+    Trainings(TASKS, ("DDPG",)),
+    Trainings(PART_TASKS, tuple(WITHOUT)),
+    Trainings(SETTINGS_TASKS, tuple(WITH_NAFS_SETTINGS)),
+    Trainings(("HalfCheetah-v5",), tuple(COMPARED), LONG_STEPS, (LONG_SEED,)),
+)
+"""The most telling first; within each, the first seed of all tasks first."""
+
+
+@dataclass(frozen=True)
+class MujocoTasks(Experiment):
+    """Trainings on tasks with two to six actions."""
+
+    depends_on: ClassVar[tuple[str, ...]] = ("agents",)
+    tasks: tuple[str, ...] = TASKS  # names of the tasks
+    steps: int | None = None  # of a training; by default those of its kind
+    seeds: int | None = None  # number of trainings of each kind; by default all
+    episodes: int = 3  # of an evaluation
+    evaluations: int = 10  # along a training, the last at its end
+
+    def cases(self) -> list[Row]:
+        """Each training."""
+        return [
+            {"task": task, "algorithm": algorithm, "seed": seed}
+            for of in TRAININGS
+            for seed in of.seeds[: self.seeds]
+            for task in of.tasks
+            if task in self.tasks
+            for algorithm in of.algorithms
+        ]
+
+    def rows(self, task: str, algorithm: str, seed: int) -> Iterable[Row]:
+        """The course of a training."""
+        steps = self.steps or (LONG_STEPS if seed == LONG_SEED else STEPS)
+        return course(algorithm, task, seed, steps, self.evaluations, self.episodes)
+
+
+FULL = MujocoTasks()
+QUICK = MujocoTasks(tasks=("Reacher-v5",), steps=120, seeds=1, episodes=1, evaluations=1)
+
+
+def ends(rows: DataFrame) -> DataFrame:
+    """A row for each training: means of its last evaluations."""
+    trainings = rows.groupby(["task", "algorithm", "seed"], sort=False)
+    last = trainings.tail(RECENT).groupby(["task", "algorithm", "seed"], sort=False)
+    return last.agg({"steps": "max", "return": "mean", "v_over_bound": "max"}).reset_index()
+
+
+def answer(rows: DataFrame) -> str:
+    """How NAF does next to each of the other algorithms, and how near V comes to its bound."""
+    found = ends(rows[rows.seed.isin(SEEDS)])
+    naf = found[found.algorithm == "NAF"]
+    nearest = naf.sort_values("v_over_bound").iloc[-1]
+    sentences = [_compared(naf, found[found.algorithm == other], other) for other in COMPARED if other != "NAF"]
+    bound = f"V comes to {shown(nearest.v_over_bound, '.2f')} of its bound at most, on {nearest['task']}."
+    return " ".join([*sentences, bound])
+
+
+def _compared(naf: DataFrame, others: DataFrame, name: str) -> str:
+    """Where the interval of NAF is above that of another algorithm and where below, and how likely a seed is above."""
+    ones, of_others = (
+        {task: of["return"] for task, of in groups(all_seeds, "task").items()} for all_seeds in (naf, others)
+    )
+    tasks = [task for task in TASKS if min(len(found.get(task, ())) for found in (ones, of_others)) >= FEWEST]
+    if not tasks:
+        return f"Too few trainings are made so far to compare {name}."
+    verdicts: dict[str, list[str]] = {}
+    for task in tasks:
+        (_, low, high), (_, other_low, other_high) = map(interquartile_mean, (ones[task], of_others[task]))
+        verdict = "above" if low > other_high else "below" if high < other_low else "not told apart from"
+        verdicts.setdefault(f"{verdict} {name}", []).append(task)
+    listed = "; ".join(f"{verdict} on {', '.join(where)}" for verdict, where in verdicts.items())
+    chance = improvement([ones[task] for task in tasks], [of_others[task] for task in tasks])
+    middle, *ends_of_it = (shown(value, ".2f") for value in chance)
+    fewest = min(len(found[task]) for found in (ones, of_others) for task in tasks)
+    return (
+        f"After {STEPS:,} steps NAF is {listed}; a seed of NAF is above one of {name} with a probability of {middle} "
+        f"({' to '.join(ends_of_it)}; seeds: {so_far(fewest, len(SEEDS))})."
+    )
+
+
+def figure(rows: DataFrame) -> Figure:
+    """Return along the trainings: interquartile mean of the seeds and its interval."""
+    plain = rows[rows.algorithm.isin(COMPARED) & rows.seed.isin(SEEDS)]
+    drawn = line_panels(_means(plain, "steps"), "task", "steps", "return", "algorithm")
+    for axis in drawn.axes:
+        axis.xaxis.set_major_formatter(EngFormatter(sep=""))
+    return drawn
+
+
+def _means(rows: DataFrame, *more: str) -> DataFrame:
+    """Interquartile means of the returns of each task and algorithm, in their order.
+
+    :param more: further columns that tell the means apart
+    """
+    found: list[Row] = []
+    keys = ["task", "algorithm", *more]
+    for values, of in groups(rows, *keys).items():
+        mean, *interval = interquartile_mean(of["return"])
+        low, high = interval if len(of) >= FEWEST else (None, None)
+        about = {**dict(zip(keys, values, strict=True)), "seeds": so_far(len(of), len(SEEDS))}
+        ratio = of.v_over_bound.max()
+        found.append({**about, "return": mean, "return_low": low, "return_high": high, "v_over_bound": ratio})
+    orders = {"task": TASKS, "algorithm": (*COMPARED, *WITHOUT, *WITH_NAFS_SETTINGS)}
+    return DataFrame(found).sort_values(
+        keys, key=lambda column: column.map(orders[column.name].index) if column.name in orders else column
+    )
+
+
+def four_algorithms(rows: DataFrame) -> str:
+    """The four algorithms on all tasks."""
+    return _table(rows, COMPARED, TASKS)
+
+
+def parts(rows: DataFrame) -> str:
+    """NAF without its own parts."""
+    return _table(rows, ("NAF", *WITHOUT), PART_TASKS)
+
+
+def same_settings(rows: DataFrame) -> str:
+    """TD3 and DDPG with settings of NAF."""
+    return _table(rows, ("NAF", "TD3", "DDPG", *WITH_NAFS_SETTINGS), SETTINGS_TASKS)
+
+
+def _table(rows: DataFrame, algorithms: Collection[str], tasks: Collection[str]) -> str:
+    """Ends of trainings: interquartile means over seeds."""
+    found = ends(rows[rows.algorithm.isin(algorithms) & rows["task"].isin(tasks) & rows.seed.isin(SEEDS)])
+    columns = ["task", "algorithm", "seeds", "return", "return_low", "return_high", "v_over_bound"]
+    caption = (
+        f"Mean return of the last {RECENT} evaluations in {STEPS:,} steps: interquartile mean and its 95 % interval."
+    )
+    return table(_means(found), columns, caption, **{"return": ".1f", "v_over_bound": ".2f"})
+
+
+def long_runs(rows: DataFrame) -> str:
+    """One long run of each algorithm."""
+    found = ends(rows[rows.seed == LONG_SEED])
+    if not len(found):
+        return f"The runs of {LONG_STEPS:,} steps are still to be made."
+    caption = f"Mean return of the last {RECENT} evaluations of one long run each."
+    columns = ["task", "algorithm", "steps", "return", "v_over_bound"]
+    return table(found, columns, caption, **{"return": ".1f", "v_over_bound": ".2f"})
