@@ -10,7 +10,7 @@ from interrupted import EPISODE
 from laboratory import COARSE_PHYSICS
 
 from sarah.episode.episode import simulate
-from sarah.episode.push import Push
+from sarah.episode.push import Push, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
@@ -20,7 +20,7 @@ from sarah.errors import ConfigurationError, RunFolderError
 from sarah.recorded.folder import new_path
 from sarah.robot.dimensions import dimensions_alike
 from sarah.runs.config import TrainingConfig
-from sarah.runs.episode_words import differences, told_of
+from sarah.runs.episode_words import changed_settings, differences, told_of
 from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_episodes import choose_episode, episode_of_parameters, episodes_of_run
 from sarah.runs.run_folder import RunFolder
@@ -192,6 +192,24 @@ def test_what_an_option_changes_has_both_values() -> None:
     other = dataclasses.replace(UNPUSHED, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
     stepping = "stepping 0.5, 1, 0, 1, 1 instead of 0.5, 1, 0, 1, 0.75"
     assert list(differences(changed, other)) == ["payload 3 instead of 0", stepping]
+    assert list(differences(PushedConfig(push=UNPUSHED.push), UNPUSHED)) == []  # only one of both has P1 to P5
+
+
+@pytest.mark.parametrize(
+    ("payload", "of_subject", "words"),
+    [
+        (0.0, 0.0, []),
+        (3.0, 0.0, ["payload 3"]),
+        (3.0, 3.0, ["payload 3"]),
+        (3.0, 5.0, ["payload 3 instead of 5"]),
+        (0.0, 5.0, ["payload 0 instead of 5"]),
+    ],
+)
+def test_a_special_setting_that_was_not_kept_has_both_values(
+    payload: float, of_subject: float, words: list[str]
+) -> None:
+    subject = dataclasses.replace(BALANCE.episode, payload=of_subject)
+    assert list(changed_settings(BALANCE, dataclasses.replace(subject, payload=payload), subject)) == words
 
 
 def test_the_ground_is_told_as_the_seed_draws_it(still: Trace) -> None:
