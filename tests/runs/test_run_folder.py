@@ -69,11 +69,14 @@ def test_its_episodes_are_there_to_choose_from(run: RunFolder) -> None:
     assert learned.spec == EpisodeSpec((0.1, 0.2, 0.3, 0.4, 0.5), 0, config=EPISODE)
     assert [episode.spec for episode in both] == SPECS and [episode.name for episode in both] == ["0", "1"]
     assert best.name == "best" and best.score == max(episode.score for episode in both)  # type: ignore[type-var]
+    assert both[0].score == simulate(SPECS[0]).score and f"score {both[0].score:.2f}" in both[0].label
     assert best.spec in SPECS and both[1].of(SPECS[1]) is both[1] and both[1].of(SPECS[0]).score is None
     episodes = [learned, best, *both]
     assert choose_episode(episodes, None) is learned and choose_episode(episodes, "1") is both[1]
     with pytest.raises(ConfigurationError, match=r"unknown episode '2' \(allowed: learned, best, 0 to 1\)"):
         choose_episode(episodes, "2")
+    run.result_path.unlink()  # as long as it learns
+    assert [episode.name for episode in episodes_of_run(run)] == ["best", "0", "1"]
 
 
 def test_without_episodes_there_is_nothing_to_show(run: RunFolder) -> None:

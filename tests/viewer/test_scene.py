@@ -21,7 +21,9 @@ from sarah.runs.run_episodes import episode_of_parameters
 from sarah.scenery.camera import View
 from sarah.simulation.terrain import Terrain
 from sarah.viewer.page import Page
-from sarah.viewer.scene import FIRST_CAMERA, WINDOW, RobotScene, arrow, first_camera, status_place
+from sarah.viewer.plots import CHARTS, Plots
+from sarah.viewer.scenario import Scenario
+from sarah.viewer.scene import FIRST_CAMERA, WINDOW, RobotScene, arrow, channels, first_camera, status_place
 from sarah.viewer.server import serving
 
 SPEC = EpisodeSpec((0.0,) * 4, 0, "balance", BalanceConfig(time_limit=1.5, push=Push(0.0), physics=COARSE_PHYSICS))
@@ -108,6 +110,27 @@ def test_robot_words_and_pushes_are_in_the_first_view(dimensions: dict[str, floa
 def test_an_arrow_is_as_long_as_its_force_is_strong_up_to_its_limit() -> None:
     lengths = [float(np.ptp(arrow(np.array((newtons, 0.0, 0.0)))[:, 0])) for newtons in (50.0, 100.0, 500.0, 1000.0)]
     assert lengths[1] == pytest.approx(2 * lengths[0]) and lengths[2] == lengths[3] > lengths[1]
+
+
+def test_plots_show_their_window_of_time_and_its_values(trace: Trace) -> None:
+    quick = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, step_frequency=2.0))
+    with serving("127.0.0.1", 8080) as server:
+        plots = Plots(server.gui)
+        plots.load(trace, Scenario.of(quick))
+        plots.show(1.2)
+        for chart, shown in zip(CHARTS, plots.charts, strict=True):
+            low, high = shown.scales["y"]["range"]
+            assert high - low > 0.99 * chart.smallest_span and all(
+                low < np.median(line) < high for line in shown.data[4:]
+            )
+            assert (
+                shown.scales["x"]["range"] == (trace.time[0], trace.time[-1]) == (shown.data[0][0], shown.data[0][-1])
+            )
+    assert set(shown.data[-1]) == {2.0}  # the frequency that is best for the reward
+
+
+def test_colours_are_red_green_and_blue() -> None:
+    assert channels("#0172B3") == (1, 0x72, 0xB3)
 
 
 def test_nothing_is_played_before_somebody_looks() -> None:
