@@ -5,6 +5,7 @@ import io
 import math
 import time
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -118,7 +119,8 @@ def test_plots_show_their_window_of_time_and_its_values(trace: Trace) -> None:
         plots = Plots(server.gui)
         plots.load(trace, Scenario.of(quick))
         plots.show(1.2)
-        for chart, shown in zip(CHARTS, plots.charts, strict=True):
+        charts: Any = plots.charts
+        for chart, shown in zip(CHARTS, charts, strict=True):
             low, high = shown.scales["y"]["range"]
             assert high - low > 0.99 * chart.smallest_span and all(
                 low < np.median(line) < high for line in shown.data[4:]
@@ -139,7 +141,8 @@ def test_nothing_is_played_before_somebody_looks() -> None:
     episode = episode.of(dataclasses.replace(episode.spec, config=short))
     with serving("127.0.0.1", 8080) as server:
         page = Page(server, [episode], episode)
-        while not page.frames:
+        deadline = time.monotonic() + 60.0
+        while not page.frames and time.monotonic() < deadline:
             time.sleep(0.02)
         time.sleep(0.5)
         assert page.frames == 1
