@@ -54,6 +54,16 @@ def test_a_session_repeats_and_goes_on_from_half_of_its_journal(learner: str, tm
     assert folder.journal_path.read_bytes() == content
 
 
+def test_windows_that_are_known_are_not_simulated_again(
+    whole: tuple[Path, SessionResult], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = SessionFolder(shutil.copytree(whole[0], tmp_path / "copy"))
+    folder.result_path.unlink()
+    monkeypatch.setattr("sarah.operation.robot_in_operation.RunningRobot", lambda *_: pytest.fail("it is known"))
+    monkeypatch.setattr("sarah.pictures.session_figure.draw_session", lambda *_: None)
+    assert operate(folder, SPEC) == whole[1]
+
+
 def test_the_folder_has_a_table_a_picture_and_parameters(whole: tuple[Path, SessionResult]) -> None:
     path, result = whole
     assert len((path / "windows.csv").read_text().splitlines()) == 1 + len(result.windows)
