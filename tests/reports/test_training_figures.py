@@ -93,7 +93,7 @@ def test_several_runs_are_a_median_between_quartiles(tmp_path: Path, drawn: Draw
     draw_figures(runs, tmp_path / "out")
     (axis, _) = drawn["figure_4_reward_and_frequency"].axes
     (band,), (*_, line) = axis.collections, axis.lines
-    x, y = band.get_paths()[0].vertices.T
+    x, y = np.array(band.get_paths()[0].vertices).T
     last = y[x == x.max()]
     assert 2.0 * last.min() == last.max() / 2.0 == pytest.approx(np.ravel(line.get_ydata())[-1])
 
