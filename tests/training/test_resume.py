@@ -13,7 +13,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 from sarah.agents import LocalNAF, corrections
 from sarah.episode.tasks import TASKS
 from sarah.episode.workers import Executor, Job, Workers, begin_episode
-from sarah.errors import LearningError, ResumeError
+from sarah.errors import LearningError, ResumeError, RunFolderError
 from sarah.runs.agent_settings import NAFSettings, settings_of
 from sarah.runs.config import AGENTS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -131,6 +131,13 @@ def test_a_training_that_does_not_repeat_is_not_resumed(whole: RunFolder, tmp_pa
     assert {path.name: path.read_bytes() for path in begun.path.iterdir()} == before
     train(whole.config(), begun)
     assert everything(begun) == everything(whole)
+
+
+def test_two_trainings_do_not_share_a_run_folder(whole: RunFolder, tmp_path: Path) -> None:
+    begun = RunFolder.create(tmp_path / "begun", whole.config())
+    with begun.journal_of(whole.config()), pytest.raises(RunFolderError, match=r"begun is in use by another training"):
+        train(whole.config(), begun)
+    go_on(begun, 1)
 
 
 def test_weights_that_are_not_finite_stop_the_training(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
