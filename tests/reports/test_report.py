@@ -56,7 +56,9 @@ def test_report_is_a_page_that_needs_nothing_else(
 ) -> None:
     page = tmp_path / "page.html"
     call(monkeypatch, report_command, run.path, "--out", page, "--episodes", 2, "--seconds", 1, 1.2)
-    assert capsys.readouterr().out == f"{page}\n" and [path.name for path in tmp_path.iterdir()] == ["page.html"]
+    shown, said = capsys.readouterr()
+    assert f"{run.path}\n" in said and "--task" not in said
+    assert shown == f"{page}\n" and [path.name for path in tmp_path.iterdir()] == ["page.html"]
     text = page.read_text(encoding="utf-8")
     addresses = re.findall(r'(?:src|href)="([^"]{0,40})', text)
     assert addresses and all(address.startswith("data:") for address in addresses) and "url(" not in text
