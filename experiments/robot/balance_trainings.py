@@ -8,7 +8,7 @@ sets: those that judge have chosen nothing.
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -79,16 +79,22 @@ class SecondTrainingExperiment(TrainingExperiment):
 
         Trainings that the result ``balance_trainings`` lacks are run in this process.
         """
-        in_full = (self.budget, self.time_limit) == (SecondTrainingExperiment.budget, None)
-        is_known = in_full and "balance_trainings" in record.names()
-        rows = record.read("balance_trainings").rows if is_known else ()
-        known = {int(row["seed"]): row for row in rows if row["engine"] == engine}
+        known = {int(row["seed"]): row for row in self.rows_of("balance_trainings", engine)}
         found = {}
         for seed in self.training_seeds:
             row = known.get(seed) or self.learned(engine, seed)
             recommended, mu = (tuple(float(row[name]) for name in names) for names in (NAMES, MU_NAMES))
             found[f"naf seed {seed}"] = recommended, mu
         return found
+
+    def rows_of(self, name: str, engine: Engine) -> list[Mapping[str, str]]:
+        """Rows that another result has of an engine; none if this experiment has other sizes than the results.
+
+        :param name: name of the result
+        """
+        in_full = (self.budget, self.time_limit) == (SecondTrainingExperiment.budget, None)
+        rows = record.read(name).rows if in_full and name in record.names() else ()
+        return [row for row in rows if row["engine"] == engine]
 
     def learned(self, engine: Engine, seed: int) -> dict[str, str]:
         """Columns of what a training learns, which is run or resumed in this process unless it is there."""

@@ -1,135 +1,68 @@
 """Does the robot learn to come back after a push, and how close do trainings come to the best known V1 to V4?
 
-The best known set of an engine is found by a search around the shipped set and around what trainings recommend, on
-pushes of other seeds than those that judge it.
+All sets meet the same pushes. They are judged in the engine in which they were learned.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from matplotlib.figure import Figure
 from pandas import DataFrame, Series
 
 from experiments.record import Row
-from experiments.robot.balance_trainings import (
-    CHOOSING_SEED,
-    JUDGING_SEED,
-    NAMES,
-    PUSH_100,
-    SHIPPED,
-    SecondTrainingExperiment,
-)
+from experiments.robot import best_known
+from experiments.robot.balance_trainings import JUDGING_SEED, NAMES, PUSH_100
+from experiments.robot.best_known import BEST, KNOWN, NEUTRAL, SearchExperiment
 from experiments.shapes import groups, legend, panels, strips
 from experiments.tables import WORDS, shown, table
-from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
-from sarah.episode.tasks import BALANCE
-from sarah.reports.uncertainty import standard_error
+from sarah.control.parameters import Parameters
+from sarah.reports.uncertainty import number_at, standard_error
 from sarah.simulation.engines import Engine
 
-NEUTRAL, BEST, MEAN = "V = 0", "best known", "mean of trainings"
-KNOWN = (NEUTRAL, "shipped", "best training", "search winner", BEST)
-"""Sets that the trainings are compared with."""
-ROUNDS = ((1, 9), (4, 24), (16, 87), (32, 300))
-"""Divisor of the number of candidates that each round of the search leaves, and number of pushes met by its end."""
-DEVIATION = (0.3, 0.8, 0.3, 0.8)
-"""Standard deviation of candidates around a known set; what V2 and V4 do shows over longer distances."""
+RECOMMENDED, MU, COMPARED = "recommended", "mu", "compared with"
+"""What a set of V1 to V4 is: a training's recommendation, what its network says, or one to compare these with."""
 ENOUGH = 0.95
 """Share of the best known score from which a training counts as close to it."""
 
 
 @dataclass(frozen=True)
-class SecondTraining(SecondTrainingExperiment):
+class SecondTraining(SearchExperiment):
     """Second Trainings by NAF: what each recommends, and how this and the network's own V1 to V4 do."""
 
-    judging: int = 300  # number of pushes that judge a set, and of those that choose the best one
-    candidates: int = 256  # number of sets that the search for the best known set begins with
+    judging: int = 300  # number of pushes that judge a set
     surviving: int = 100  # number of pushes of 100 N by which survival is judged
 
     def cases(self) -> list[Row]:
-        """The known sets, each training, and the mean of all trainings; engines in turn, which share no search."""
-        runs = [*KNOWN, *(f"naf seed {seed}" for seed in self.training_seeds), MEAN]
-        return [{"engine": engine, "run": run} for run in runs for engine in self.engines]
+        """The known sets, then those of each training; engines in turn."""
+        runs = [(COMPARED, run) for run in KNOWN]
+        runs += [(kind, f"naf seed {seed}") for seed in self.training_seeds for kind in (RECOMMENDED, MU)]
+        return [{"kind": kind, "run": run, "engine": engine} for kind, run in runs for engine in self.engines]
 
-    def rows(self, engine: Engine, run: str) -> Iterator[Row]:
-        """How a set does, or all trainings together."""
-        trainings = self.trainings(engine)
-        known = self._known(engine, trainings)
-        best = self._scores(engine, [known[BEST]])
-        asked = [training for name, training in trainings.items() if run in (name, MEAN)]
-        recommended = [one for one, _ in asked] or [known[run]]
+    def rows(self, kind: str, run: str, engine: Engine) -> Iterator[Row]:
+        """How a set does. Scores stand in one cell, for their number."""
+        parameters = self._parameters(kind, run, engine)
+        survivable = self.condition("100 N", engine, JUDGING_SEED + 2000, self.surviving, PUSH_100)
+        scores = self.judge.scores(parameters, self.pushes(engine, JUDGING_SEED, self.judging))
         yield {
-            **dict(zip(NAMES, [None] * len(NAMES) if run == MEAN else recommended[0], strict=True)),
-            "score": float(self._scores(engine, recommended).mean()),
-            **self._judged("", engine, recommended, best),
-            **self._judged("mu_", engine, [mu for _, mu in asked], best),
+            **dict(zip(NAMES, parameters, strict=True)),
+            "survival_100": float(np.mean(self.judge.outcomes(parameters, survivable)["survived"])),
+            "scores": " ".join(f"{score:.4f}" for score in scores),
         }
 
-    def _judged(self, prefix: str, engine: Engine, sets: Sequence[Parameters], best: np.ndarray) -> Row:
-        """Columns of what the judge says about sets."""
-        of_best, survival = f"{prefix}of_best", f"{prefix}survival_100"
-        if not sets:
-            return dict.fromkeys((of_best, f"{of_best}_error", survival))
-        survivable = self.condition("100 N", engine, JUDGING_SEED + 2000, self.surviving, PUSH_100)
-        survived = [self.judge.outcomes(one, survivable)["survived"] for one in sets]
-        return {**ratio(of_best, self._scores(engine, sets), best), survival: float(np.mean(survived))}
-
-    def _scores(self, engine: Engine, sets: Sequence[Parameters]) -> np.ndarray:
-        """Scores under the pushes that judge, of shape (sets, pushes)."""
-        asked = self.pushes(engine, JUDGING_SEED, self.judging)
-        return np.array([self.judge.scores(one, asked) for one in sets])
-
-    def _known(self, engine: Engine, trainings: Mapping[str, tuple[Parameters, Parameters]]) -> dict[str, Parameters]:
-        """The sets that trainings are compared with, by name. Outcomes of the search are kept, so it is made once."""
-        assert BALANCE.neutral is not None
-        recommended = [one for one, _ in trainings.values()]
-        known = list(dict.fromkeys([SHIPPED, *recommended, *(mu for _, mu in trainings.values())]))
-        drawn = around([SHIPPED, *recommended], max(1, self.candidates - len(known)))
-
-        def scores(sets: Sequence[Parameters], episodes: int) -> list[float]:
-            asked = self.pushes(engine, CHOOSING_SEED, min(episodes, self.judging))
-            return [float(self.judge.scores(one, asked).mean()) for one in sets]
-
-        candidates = list(dict.fromkeys([*known, *drawn]))
-        rounds = [(max(1, len(candidates) // divisor), episodes) for divisor, episodes in ROUNDS]
-        ranked = successive_halving(candidates, rounds, scores)
-        first_of = [next(one for one in ranked if one in group) for group in (recommended, drawn, ranked)]
-        return dict(zip(KNOWN, [BALANCE.neutral, SHIPPED, *first_of], strict=True))
+    def _parameters(self, kind: str, run: str, engine: Engine) -> Parameters:
+        """V1 to V4 of a set. The search is made in this process if the result ``best_known`` lacks it."""
+        if kind != COMPARED:
+            return self.trainings(engine)[run][kind == MU]
+        rows = [row for row in self.rows_of("best_known", engine) if row["run"] == run]
+        return tuple(float(rows[0][name]) for name in NAMES) if rows else self.found(engine)[run]
 
 
 FULL = SecondTraining()
-QUICK = SecondTraining(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, judging=3, candidates=4, surviving=1)
-
-
-def successive_halving(
-    candidates: Sequence[Parameters],
-    rounds: Sequence[tuple[int, int]],
-    scores: Callable[[Sequence[Parameters], int], Sequence[float]],
-) -> list[Parameters]:
-    """Candidates, the best first.
-
-    :param rounds: number of the best that take part in each round, and number of episodes that they have met by its end
-    :param scores: function that returns the scores of some sets after so many episodes
-    """
-    ranked = list(candidates)
-    for count, episodes in rounds:
-        part = ranked[:count]
-        found = dict(zip(part, scores(part, episodes), strict=True))
-        ranked[:count] = sorted(part, key=found.__getitem__, reverse=True)
-    return ranked
-
-
-def around(centres: Sequence[Parameters], count: int) -> list[Parameters]:
-    """Sets drawn around known ones, within the box."""
-    generator = np.random.default_rng(0)
-    low, high = ([getattr(parameter, end) for parameter in BALANCE_PARAMETERS] for end in ("low", "high"))
-    drawn = []
-    for _ in range(count):
-        centre = centres[int(generator.integers(len(centres)))]
-        drawn.append(tuple(map(float, generator.normal(centre, DEVIATION).clip(low, high))))
-    return drawn
+QUICK = SecondTraining(**vars(best_known.QUICK) | {"workers": 0}, judging=3, surviving=1)  # all cases share a training
 
 
 def ratio(name: str, values: np.ndarray, others: np.ndarray) -> Row:
@@ -142,27 +75,53 @@ def ratio(name: str, values: np.ndarray, others: np.ndarray) -> Row:
     return {name: found, f"{name}_error": standard_error(values - found * others) / float(others.mean())}
 
 
-def _learned(rows: DataFrame) -> DataFrame:
-    """Rows of the trainings."""
-    return rows[rows.run.str.startswith("naf")]
+def _scores(rows: DataFrame) -> np.ndarray:
+    """Scores under the pushes that judge, of shape (sets, pushes)."""
+    return np.array([[float(score) for score in cell.split()] for cell in rows.scores])
 
 
-def _of_run(rows: DataFrame, run: str) -> Series:
-    """The row of a run."""
-    return rows[rows.run == run].iloc[0]
+def _known(rows: DataFrame, run: str) -> DataFrame:
+    """The row of a set that trainings are compared with, of an engine's rows."""
+    return rows[(rows.kind == COMPARED) & (rows.run == run)]
+
+
+def _of_best(rows: DataFrame, best: DataFrame) -> Series:
+    """Share of the best known score that each set reaches."""
+    return Series(_scores(rows).mean(axis=1) / _scores(best).mean(), rows.index)
+
+
+def _summary(group: DataFrame, kind: str) -> Row:
+    """Columns of what the trainings of an engine reach together.
+
+    :param group: rows of the engine
+    :param kind: whether it is what they recommend, or what their networks say
+    """
+    rows, best = group[group.kind == kind], _known(group, BEST)
+    scores, of_best = _scores(rows), _of_best(rows, best)
+    every = np.full(len(rows), True)
+    close = number_at(np.vstack([scores, _scores(best)]), np.append(every, False), ENOUGH, _scores(best).mean())
+    return {
+        "trainings": len(rows),
+        **ratio("of_best", scores, _scores(best)),
+        "lowest": of_best.min(),
+        **dict(zip(("within_5_%", "within_5_%_low", "within_5_%_high"), close, strict=True)),
+        "survival_100": rows.survival_100.mean(),
+        "lowest_survival": rows.survival_100.min(),
+    }
 
 
 def answer(rows: DataFrame) -> str:
     """Whether the robot learns to come back."""
     sentences = []
     for engine, group in groups(rows, "engine").items():
-        mean, neutral, runs = _of_run(group, MEAN), _of_run(group, NEUTRAL), _learned(group)
-        survival = [shown(share, ".0%") for share in (mean.survival_100, runs.survival_100.min(), neutral.survival_100)]
+        found, (neutral,) = _summary(group, RECOMMENDED), _known(group, NEUTRAL).survival_100
+        survival = [shown(share, ".0%") for share in (found["survival_100"], found["lowest_survival"], neutral)]
+        reached = shown(found["of_best"], ".1%")
         sentences.append(
             f"In {WORDS[engine]} the robot survives {survival[0]} of pushes of 100 N after a training,"
             f" {survival[1]} after the worst one, and {survival[2]} without the hip law. Under harder pushes the"
-            f" {len(runs)} trainings reach {shown(mean.of_best, '.1%')} of the best known score on average, and"
-            f" {(runs.of_best >= ENOUGH).sum()} of them come within 5 % of it."
+            f" {found['trainings']} trainings reach {reached} of the best known score on average, and"
+            f" {found['within_5_%']} of them come within 5 % of it."
         )
     return " ".join(sentences)
 
@@ -170,7 +129,8 @@ def answer(rows: DataFrame) -> str:
 def headroom(rows: DataFrame) -> str:
     """How much better than the shipped V1 to V4 could be."""
     reached = [
-        f"{shown(_of_run(group, 'shipped').of_best, '.1%')} of the best known score in {WORDS[engine]}"
+        f"{shown(_of_best(_known(group, 'shipped'), _known(group, BEST)).iloc[0], '.1%')} of the best known score in"
+        f" {WORDS[engine]}"
         for engine, group in groups(rows, "engine").items()
     ]
     return f"The shipped V1 to V4 reach {' and '.join(reached)}."
@@ -182,11 +142,12 @@ def figure(rows: DataFrame) -> Figure:
     drawn, (*settled, shares) = panels(len(engines) + 1, 0.35)
     columns = {}
     for axis, (engine, group) in zip(settled, engines.items(), strict=True):
-        best = _of_run(group, BEST)
-        strips(axis, {name: _learned(group)[name] for name in NAMES}, {name: best[name] for name in NAMES}, BEST)
+        best, learned = _known(group, BEST), group[group.kind == RECOMMENDED]
+        marks = {name: float(best[name].iloc[0]) for name in NAMES}
+        strips(axis, {name: learned[name] for name in NAMES}, marks, BEST)
         axis.set_title(WORDS[engine], fontsize="small")
-        columns[f"{WORDS[engine]}\nlearned"] = _learned(group).of_best
-        columns[f"{WORDS[engine]}\nmu"] = _learned(group).mu_of_best
+        for kind, word in ((RECOMMENDED, "learned"), (MU, "mu")):
+            columns[f"{WORDS[engine]}\n{word}"] = _of_best(group[group.kind == kind], best)
     strips(shares, columns, dict.fromkeys(columns, 1.0))
     shares.set_ylabel("score over the best known one")
     shares.tick_params(axis="x", labelsize="x-small")
@@ -196,28 +157,32 @@ def figure(rows: DataFrame) -> Figure:
 
 def closeness(rows: DataFrame) -> str:
     """How close trainings come to the best known set, for what they recommend and for what their networks say."""
-    found = []
-    for engine, group in groups(rows, "engine").items():
-        for kind, prefix in (("recommended", ""), ("mu", "mu_")):
-            shares, mean = _learned(group)[f"{prefix}of_best"], _of_run(group, MEAN)
-            columns = {column: mean[f"{prefix}{column}"] for column in ("of_best", "of_best_error", "survival_100")}
-            close = {"within_5_%": (shares >= ENOUGH).sum(), "lowest": shares.min()}
-            found.append({"engine": engine, "set": kind, **columns, **close})
+    found = [
+        {"engine": engine, "set": kind, **_summary(group, kind)}
+        for engine, group in groups(rows, "engine").items()
+        for kind in (RECOMMENDED, MU)
+    ]
     caption = (
-        f"Score over that of the best known set of the engine: mean of {FULL.seeds} trainings, with its standard error"
-        " over trainings and pushes; mean survival of pushes of 100 N; number of trainings within 5 % of the best known"
-        " score; lowest share of a training."
+        "Score over that of the best known set of the engine, mean and lowest, with the standard error over trainings"
+        " and pushes; number of trainings within 5 % of the best known score, with its 95 % interval over pushes;"
+        " survival of pushes of 100 N, mean and lowest."
     )
-    formats = dict.fromkeys(("of_best", "survival_100", "lowest"), ".1%")
+    formats = dict.fromkeys(("of_best", "survival_100", "lowest", "lowest_survival"), ".1%")
     return table(DataFrame(found), list(found[0]), caption, **formats)
 
 
 def compared(rows: DataFrame) -> str:
     """The sets that trainings are compared with."""
-    columns = ["engine", "run", *NAMES, "score", "of_best", "of_best_error"]
+    found: list[dict[str, Any]] = []
+    for engine, group in groups(rows, "engine").items():
+        best = _scores(_known(group, BEST))
+        for run in KNOWN:
+            known = _known(group, run)
+            values = {name: float(known[name].iloc[0]) for name in NAMES}
+            score = {"score": float(_scores(known).mean())} | dict(ratio("of_best", _scores(known), best))
+            found.append({"engine": engine, "run": run} | values | score)
     caption = (
         f"The sets that trainings are compared with: mean score under {FULL.judging} hard pushes, and its share of the"
         " best known score with its standard error. P1 to P5 are the shipped ones."
     )
-    known = rows[rows.run.isin(KNOWN)].sort_values("engine", kind="stable")
-    return table(known, columns, caption, of_best=".1%")
+    return table(DataFrame(found), list(found[0]), caption, of_best=".1%")

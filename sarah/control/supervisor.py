@@ -96,7 +96,7 @@ class Supervisor:
         self.state_change = None
         self.targets = STANDING_TARGETS
         self._before: tuple[float, ...] = ()
-        self._unheard, self._told = math.inf, ""
+        self._unheard, self._told, self._stopped_for = math.inf, "", ""
         self._begin()
 
     def _begin(self) -> None:
@@ -224,7 +224,7 @@ class Supervisor:
         if self.state is State.STOPPING:
             self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
             if not any(self.targets):
-                self._enter(State.STANDING, "stopped")
+                self._enter(State.STANDING, f"stopped: {self._stopped_for}")
                 if self._is_to_step:
                     self._begin()
             return
@@ -264,6 +264,8 @@ class Supervisor:
         self.state = state
         if state in (State.STOPPING, State.FALLEN):
             self._is_to_step = False
+        if state is State.STOPPING:
+            self._stopped_for = reason
 
     @property
     def is_proven(self) -> bool:

@@ -303,7 +303,7 @@ def test_the_words_of_who_stops_it_are_no_fault() -> None:
             supervisor.step()
     assert [(change.state, change.reason) for change in said[1:]] == [
         (State.STOPPING, "no step wanted"),
-        (State.STANDING, "stopped"),
+        (State.STANDING, "stopped: no step wanted"),
     ]
     for tick in range(110):  # it was asked to step while it stopped
         supervisor.tick(noisy(STANDING, tick))

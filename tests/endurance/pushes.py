@@ -1,59 +1,54 @@
 """Do messages disturb a robot that runs?
 
 The robot is simulated in real time by ``sarah-robot --listen``, in a process of its own. For single pushes the control
-loop runs in this process, which knows in which ticks its legs swap.
+loop runs in this process, which knows in which ticks its legs swap. A network that is gone is a relay that forwards
+nothing: what is sent arrives when it is back.
 """
 
 from __future__ import annotations
 
 import contextlib
-import dataclasses
 import random
-import socket
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Iterator
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
 
-import psutil
 from pandas import DataFrame
 
 from benchmarks.timing import Timing
 from experiments.experiment import EPISODE
 from experiments.record import ResultError, Row
 from experiments.tables import shown, table
-from sarah.control.pattern_generator import Phase
-from sarah.drivers.loop import LoopTick
-from sarah.drivers.real_time import RealTime
-from sarah.drivers.simulated_robot import simulated_loop
-from sarah.episode.parameter_sets import PARAMETER_SETS
-from sarah.episode.push import NO_PUSH
-from sarah.episode.spec import EpisodeSpec
-from sarah.errors import RobotError, SarahError
+from sarah.errors import SarahError
 from sarah.remote.answers import Telemetry
 from sarah.remote.client import Client
-from sarah.remote.endpoints import REQUESTS, Endpoint
+from sarah.remote.endpoints import REQUESTS
 from sarah.remote.requests import LearnedWith, Request, read_request
-from sarah.remote.server import Server
+
+from .listening_robots import COMMAND, Robot, free_port, in_a_process, in_this_process, running
+from .relay import Relay
 
 NEAR = {"V1": (0.5, 0.9), "V2": (0.0, 0.5), "V3": (0.4, 0.8), "V4": (-0.5, 0.2)}
 """Ranges of V1 to V4 with which the robot steps well."""
 LARGEST_LAG = 3
 """Number of ticks after which a request must have arrived."""
-COMMAND = "import sys; from sarah.cli.{0} import main; sys.argv[0] = 'sarah-{0}'; main()"
 COLUMNS = ("messages", "answers", "time_s", "late_ticks", "grown_mib")
-GARBAGE, FLOOD, KILLED, TWO = "garbage", "a flood", "killed pushers", "two pushers at once"
-ONE = "single pushes, own loop"
+NOTHING, WATCHED, GARBAGE, FLOOD, GONE = "nothing", "nothing, log and viewer", "garbage", "a flood", "network gone"
+KILLED, TWO = "killed pushers", "two pushers at once"
+STEPPING, STANDING = "single pushes, own loop", "single pushes, standing, own loop"
+IN_THIS_PROCESS = (STEPPING, STANDING)
 
 
 @dataclass(frozen=True)
 class Pushes(Timing):
     """A robot that runs, and what is sent to it.
 
-    :param seconds: time of a flood, and that for which nothing is sent, in s
+    :param seconds: time of a flood, that for which nothing is sent, and that without a network, in s
     :param garbage: number of messages that are no requests for this robot
     :param rate: messages per second
     :param kills: number of pushers that are killed
@@ -61,22 +56,23 @@ class Pushes(Timing):
     """
 
     depends_on = (*EPISODE, "sarah/drivers", "sarah/remote")
-    seconds: float = 20.0
-    garbage: int = 20_000
+    seconds: float = 60.0
+    garbage: int = 100_000
     rate: float = 1000.0
-    kills: int = 20
-    pushes: int = 200
+    kills: int = 100
+    pushes: int = 1000
 
     def cases(self) -> list[Row]:
         """What is sent."""
-        return [{"sent": sent} for sent in ("nothing", GARBAGE, FLOOD, KILLED, TWO, ONE)]
+        names = (NOTHING, WATCHED, GARBAGE, FLOOD, GONE, KILLED, TWO, *IN_THIS_PROCESS)
+        return [{"sent": name} for name in names]
 
     def rows(self, sent: str) -> Iterator[Row]:
         """What the robot does meanwhile.
 
         :param sent: what is sent
         """
-        with in_this_process() if sent == ONE else in_a_process() as robot, Client(robot.endpoint) as client:
+        with self._robot(sent) as robot, Client(robot.endpoint) as client:
             before, memory = client.state(), robot.memory_mib
             messages, answers = self._send(sent, robot)
             after = client.state()
@@ -84,6 +80,22 @@ class Pushes(Timing):
             late, grown = after.late_ticks - before.late_ticks, robot.memory_mib - memory
             seconds = after.seconds - before.seconds
             yield dict(zip(COLUMNS, (messages, answers, seconds, late, grown), strict=True))
+
+    @contextlib.contextmanager
+    def _robot(self, sent: str) -> Iterator[Robot]:
+        """The robot of a case."""
+        with contextlib.ExitStack() as stack:
+            if sent in IN_THIS_PROCESS:
+                yield stack.enter_context(in_this_process(stands=sent == STANDING))
+            elif sent == WATCHED:
+                log = Path(stack.enter_context(tempfile.TemporaryDirectory())) / "robot.mcap"
+                robot = stack.enter_context(in_a_process("--log", str(log)))
+                page = free_port().address.rpartition(":")[2]
+                stack.enter_context(running("view", "--robot", robot.endpoint.address, "--port", page))
+                time.sleep(5.0)  # until the viewer has begun
+                yield robot
+            else:
+                yield stack.enter_context(in_a_process())
 
     def _send(self, sent: str, robot: Robot) -> tuple[int, int]:
         """Send the messages of a case, and count them and the answers to them."""
@@ -93,103 +105,22 @@ class Pushes(Timing):
         if sent == FLOOD:
             refused = Request("push", {"V1": 0.7}, LearnedWith(control_rate=50)).to_json()
             return flood(robot, [refused] * round(self.seconds * self.rate), self.rate)
+        if sent == GONE:
+            return gone(robot, self.seconds)
         if sent == KILLED:
             return kill(robot, self.kills)
         if sent == TWO:
             return two(robot, self.pushes)
-        if sent == ONE:
+        if sent == STEPPING:
             return single(robot, self.pushes, generator)
+        if sent == STANDING:
+            return standing(robot, self.pushes, generator)
         time.sleep(self.seconds)
         return 0, 0
 
 
 FULL = Pushes()
 QUICK = Pushes(seconds=0.5, garbage=100, rate=200.0, kills=1, pushes=2)
-
-
-@dataclass(frozen=True)
-class Robot:
-    """A robot that runs and listens.
-
-    :param endpoint: where it listens
-    :param process: its process
-    :param swaps: ticks in which its legs have swapped, if that is known
-    """
-
-    endpoint: Endpoint
-    process: psutil.Process
-    swaps: list[int]
-
-    @property
-    def memory_mib(self) -> float:
-        """Memory of its process, in MiB."""
-        return float(self.process.memory_info().rss / 2**20)
-
-
-def _free_port() -> Endpoint:
-    with socket.socket() as found:
-        found.bind(("127.0.0.1", 0))
-        return Endpoint(f"tcp/127.0.0.1:{found.getsockname()[1]}")
-
-
-@contextlib.contextmanager
-def in_a_process() -> Iterator[Robot]:
-    """A robot that has begun to step, in a process of its own."""
-    endpoint = _free_port()
-    words = ["balance", "--engine", "mujoco", "--real-time", "--listen", endpoint.address]
-    silent: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
-    process = subprocess.Popen([sys.executable, "-c", COMMAND.format("robot"), *words, "--seconds", "3600"], **silent)
-    try:
-        _wait_for(endpoint)
-        yield Robot(endpoint, psutil.Process(process.pid), [])
-    finally:
-        process.kill()
-        process.wait()
-
-
-def _wait_for(endpoint: Endpoint) -> None:
-    """Wait until a robot steps."""
-    for _ in range(300):
-        time.sleep(0.1)
-        with contextlib.suppress(RobotError), Client(endpoint) as client:
-            if client.state().seconds > 2.0:
-                return
-    raise ResultError("the robot does not begin")
-
-
-@contextlib.contextmanager
-def in_this_process() -> Iterator[Robot]:
-    """A robot that has begun to step, in a thread of this process."""
-    shipped = PARAMETER_SETS["balance"].spec
-    config: Any = shipped.task.config_of(shipped.config, engine="mujoco", push=NO_PUSH, time_limit=3600.0)
-    supervisor = dataclasses.replace(config.supervisor, enabled=True)
-    config = dataclasses.replace(config, supervisor=supervisor, box_half_width=100.0)
-    endpoint, dt, stop = _free_port(), config.physics.control_dt, threading.Event()
-    swaps: list[int] = []
-    count = iter(range(10**9))
-
-    def look(tick: LoopTick) -> None:
-        number = next(count)
-        if tick.change is not None and tick.change.ended is Phase.LAND:
-            swaps.append(number)
-
-    with contextlib.closing(Server(endpoint, LearnedWith.of(config), dt)) as server:
-        spec = EpisodeSpec(shipped.parameters, 0, shipped.task, config)
-        robot, loop = simulated_loop(spec, pacing=RealTime(dt), observers=[look, server])
-
-        def run() -> None:
-            while loop.tick() and not stop.is_set():
-                pass
-
-        thread = threading.Thread(target=run)
-        thread.start()
-        try:
-            _wait_for(endpoint)
-            yield Robot(endpoint, psutil.Process(), swaps)
-        finally:
-            stop.set()
-            thread.join()
-            robot.off()
 
 
 def garbage(generator: random.Random) -> bytes:
@@ -271,31 +202,61 @@ def single(robot: Robot, number: int, generator: random.Random) -> tuple[int, in
     return number, number
 
 
+def standing(robot: Robot, number: int, generator: random.Random) -> tuple[int, int]:
+    """Push at any time to a robot that stands; each push has to be applied as soon as it has come."""
+    with Client(robot.endpoint) as client:
+        for _ in range(number):
+            time.sleep(generator.uniform(0.0, 0.05))
+            sent = client.state().tick
+            applied = next(iter(client.ask(near(generator)))).tick
+            if applied is None or applied - sent > LARGEST_LAG:
+                raise ResultError(f"a push to a robot that stood in tick {sent} was applied in tick {applied}")
+    return number, number
+
+
+def gone(robot: Robot, seconds: float) -> tuple[int, int]:
+    """Push, lose the network while the robot tries the parameters, and push again when it is back.
+
+    :param seconds: time without a network, in s
+    """
+    generator = random.Random(0)
+    with Relay(robot.endpoint) as relay, Client(relay.endpoint) as client:
+        first = next(iter(client.ask(near(generator))))
+        relay.stop()
+        time.sleep(seconds)
+        relay.go_on()
+        answers = [*client.ask(near(generator))]
+    return 2, len([first, *answers[:1]])
+
+
 def near(generator: random.Random) -> Request:
     """A push of parameters with which the robot steps well."""
     return Request("push", {name: round(generator.uniform(*ends), 3) for name, ends in NEAR.items()})
 
 
 def _check(sent: str, before: Telemetry, after: Telemetry) -> None:
-    if after.state != "stepping" or after.reason != "stood for a second":
+    if (after.state, after.reason) != (before.state, before.reason):
         raise ResultError(f"{sent}: the robot is {after.state}: {after.reason}")
-    if sent in ("nothing", GARBAGE, FLOOD) and before.parameters != after.parameters:
+    if sent in (NOTHING, WATCHED, GARBAGE, FLOOD) and before.parameters != after.parameters:
         raise ResultError(f"{sent}: the parameters are {dict(after.parameters)}")
 
 
 def answer(rows: DataFrame) -> str:
     """How much the robot was disturbed."""
-    ticks, messages = 100.0 * rows.time_s, int(rows.messages.sum())
-    alone, single_ones = rows.sent == "nothing", rows.sent == ONE
-    late, without = (rows.late_ticks[which].sum() / ticks[which].sum() for which in (~alone & ~single_ones, alone))
+    messages, own = int(rows.messages.sum()), rows.sent.isin(IN_THIS_PROCESS)
+    shares = rows.late_ticks / (100.0 * rows.time_s)
+    of_nothing, watched, of_messages = (
+        shown(float(shares[which].max()), ".2%")
+        for which in (rows.sent == NOTHING, rows.sent == WATCHED, ~own & ~rows.sent.isin([NOTHING, WATCHED]))
+    )
     return (
-        f"Hardly. {shown(late, '.2%')} of the ticks were late with messages, and {shown(without, '.2%')} without. "
-        f"{messages:,} messages changed parameters only where they were valid pushes, and each single push was applied "
-        "at the first swap of legs after it had come."
+        f"Hardly. At most {of_messages} of the ticks were late with messages, {of_nothing} without, and {watched} with "
+        f"a log and a viewer. {messages:,} messages changed parameters only where they were valid pushes. Each single "
+        "push was applied at the first swap of legs after it had come, or at once while the robot stood."
     )
 
 
 def effects(rows: DataFrame) -> str:
     """The same by what was sent."""
-    caption = "A robot in real time, and what was sent to it. The last loop has no real-time scheduling."
+    caption = "A robot in real time, and what was sent to it. The loops of the last rows have no real-time scheduling."
     return table(rows, list(rows.columns), caption, time_s=".0f", grown_mib=".1f")

@@ -13,7 +13,8 @@ from laboratory import RESULT
 from experiments import judge as module
 from experiments import trainings
 from experiments.judge import KEPT_TOGETHER, Condition, Judge
-from experiments.robot.second_training import around, ratio, successive_halving
+from experiments.robot.best_known import around, successive_halving
+from experiments.robot.second_training import ratio
 from experiments.trainings import identity
 from sarah.control.parameters import BALANCE_PARAMETERS
 from sarah.episode.evaluation import Evaluation

@@ -57,7 +57,11 @@ def test_the_states_of_a_supervised_robot_are_its_supervisors(tmp_path: Path) ->
     summary = summarise(log := Log(tmp_path / "a.mcap"))
     states = [(one["before"], one["state"]) for one in summary.states]
     assert states == list(pairwise(("", "standing", "stepping", "stopping", "standing", "ended")))
-    assert [one["reason"] for one in summary.states[1:4]] == ["stood for a second", "no step for 0.2 s", "stopped"]
+    assert [one["reason"] for one in summary.states[1:4]] == [
+        "stood for a second",
+        "no step for 0.2 s",
+        "stopped: no step for 0.2 s",
+    ]
     ticks = [log.values(message) for message in log.messages() if message.topic == TICKS.name]
     stopped = [one for one in ticks if one["seconds"] > summary.states[3]["seconds"]]
     assert {one["state"] for one in stopped} == {"standing"} and not any(targets_of(stopped[-1]) or (1.0,))

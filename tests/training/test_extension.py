@@ -62,10 +62,16 @@ def test_it_records_where_it_was_extended(folder: Path) -> None:
     assert after[:13] == before and len(after) == 23
 
 
-@pytest.mark.parametrize(("before", "after"), [("episodes: 22", "episodes: 23"), ("- 12", "- 11")])
-def test_it_cannot_be_extended_to_two_budgets(before: str, after: str, copy: RunFolder) -> None:
+@pytest.mark.parametrize(
+    ("before", "after", "words"),
+    [
+        ("episodes: 22", "episodes: 23", "it was extended to 22 there, and would be extended to 23 here"),
+        ("- 12", "- 11", "episodes is 11 here, and 12 in this training"),
+    ],
+)
+def test_it_cannot_be_extended_to_two_budgets(before: str, after: str, words: str, copy: RunFolder) -> None:
     copy.specification_path.write_text(copy.specification_path.read_text().replace(before, after))
-    with pytest.raises(ResumeError, match="cannot be resumed"):
+    with pytest.raises(ResumeError, match=words):
         train(copy.config(), copy)
 
 
