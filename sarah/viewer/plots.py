@@ -110,7 +110,7 @@ CHARTS = (
         "steps/s",
         (
             Line("steps per second, last 2 s", DARK, lambda trace, _: trace.steps_per_second),
-            Line("best for the reward", GREY, lambda *_: 3.0, dashed=True),
+            Line("best for the reward", GREY, lambda _, scenario: scenario.config.step_frequency, dashed=True),
         ),
         smallest_span=4.0,
     ),
@@ -147,7 +147,7 @@ class Plots:
             gui.add_html(f"<style>{STYLE}</style><div class='sarah-shades'>Background: {shades}</div>")
             self._cursor = gui.add_html("")
             self.window = gui.add_dropdown("Show", tuple(WINDOWS), initial_value="5 s")
-            self._charts = [_add_chart(gui, chart, chart is CHARTS[-1]) for chart in CHARTS]
+            self.charts = [_add_chart(gui, chart, chart is CHARTS[-1]) for chart in CHARTS]
         self._time = np.zeros(0)
         self._data: list[list[np.ndarray]] = []
         self._ranges: list[tuple[float, float]] = []
@@ -179,7 +179,7 @@ class Plots:
         first, last = float(self._time[page.start]), float(self._time[page.stop - 1])
         if page != self._page:
             self._page = page
-            for handle, data, span in zip(self._charts, self._data, self._ranges, strict=True):
+            for handle, data, span in zip(self.charts, self._data, self._ranges, strict=True):
                 # Without these scales, the page would keep a chart's range of time from the data before.
                 handle.scales = _scales((first, last), span)
                 handle.data = tuple(values[page] for values in data)

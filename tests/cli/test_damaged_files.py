@@ -45,11 +45,9 @@ def test_configuration_files(text: str, message: str, answer: Answer, tmp_path: 
 @pytest.mark.parametrize(
     ("name", "content", "command", "message"),
     [
-        ("parameters.json", "[" * 60_000, "sarah-eval", "parameters.json does not hold learned parameters"),
         ("parameters.json", learned(P3=float("nan")), "sarah-eval", "P3 must be between"),
         ("parameters.json", learned(P6=1), "sarah-eval", "it names 'P1, P2"),
         ("parameters.json", "{}", "sarah-train --task balance --from", "does not hold learned parameters"),
-        ("config.yaml", "episods: 5", "sarah-figures", "config.yaml: unknown key 'episods'"),
         ("episodes.csv", EPISODE.replace("0,1,1", "0,x,1"), "sarah-figures", "cannot be read"),
         ("episodes.csv", "", "sarah-figures", "no episodes to draw"),
         ("journal.jsonl", None, "sarah-train --episodes 200 --resume", "cannot be resumed: it has no journal.jsonl"),

@@ -81,10 +81,11 @@ def test_a_task_an_episode_and_one_for_each_that_stands_at_first() -> None:
     """Tasks cost a scheduler, so standing is not another one for every episode."""
 
     class Counting(Workers):
-        tasks = 0
+        tasks = subjects = 0
 
         def submit(self, function: Callable[..., Any], *subjects: Any) -> Job:
             self.tasks += 1
+            self.subjects += sum(subject is not None for subject in subjects)
             return super().submit(function, *subjects)
 
     for episodes in (1, 5):
@@ -94,6 +95,7 @@ def test_a_task_an_episode_and_one_for_each_that_stands_at_first() -> None:
         for _ in range(episodes + 2):
             env.step(ACTIONS[:1])
         assert workers.tasks == episodes + min(episodes, 3)
+        assert workers.subjects == 2 * episodes  # each stands once, and is simulated once
 
 
 def test_seed_decides_and_a_second_reset_goes_on() -> None:

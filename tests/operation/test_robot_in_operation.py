@@ -3,17 +3,21 @@
 import dataclasses
 import math
 from itertools import pairwise
+from types import SimpleNamespace
 from typing import Any
 
 import pytest
 from operated import quick
 
-from sarah.episode.push import Push
+from sarah.episode.push import Push, PushedConfig
 from sarah.episode.tasks import BalanceConfig
 from sarah.errors import ConfigurationError, DescriptionError
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import SHIPPED, Change, OperationConfig
-from sarah.operation.window import FELT, Window
+from sarah.operation.window import FELT, Window, WindowRecord
+from sarah.robot.description import describe_robot
+from sarah.robot.reading import STANDING
+from sarah.simulation.simulator import TorsoState
 
 STANDS = (0.0, 2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0)
 """Parameters with which the robot hardly steps: it waits for a tilt that does not come."""
@@ -56,6 +60,18 @@ def test_a_robot_in_longer_operation_looks_to_the_next_end() -> None:
             robot.skip(window)
     assert robots[0].is_over and robots[0].windows_left == 0.0
     assert not robots[1].is_over and robots[1].windows_left == 6.0
+
+
+def test_only_what_comes_after_settling_is_measured() -> None:
+    robot: Any = SimpleNamespace(description=describe_robot(), generator=SimpleNamespace(targets=(0.1,) * 6))
+    record = WindowRecord(robot, PushedConfig(), settle=2, measure=3)
+    torso = TorsoState((0.0, 0.0, 0.84), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3)
+    for a_x in (9.0, 9.0, 1.0, 2.0, 3.0):
+        robot.last_reading = STANDING._replace(acceleration=(a_x, 0.0, 9.81))
+        record.sensed(robot)
+        record.judge(torso)
+    felt = dict(zip(FELT, record.felt(), strict=True))
+    assert (felt["a_x_mean"], felt["length_lag"]) == (2.0, 0.1)
 
 
 def test_a_window_that_steps_is_worth_more_than_one_that_stands() -> None:

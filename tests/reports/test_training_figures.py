@@ -27,12 +27,12 @@ from sarah.runs.run_record import RunRecord
 Drawn = dict[str, Figure]
 
 
-def run_with_episodes(path: Path, task: str, count: int, algo: str = "naf") -> RunFolder:
+def run_with_episodes(path: Path, task: str, count: int, algo: str = "naf", best: float = 1.0) -> RunFolder:
     run = RunFolder.create(path, TrainingConfig(task=task, algo=algo))
     spec = EpisodeSpec((0.5,) * len(TASKS[task].parameters), 0, task)
     for index in range(count):
         position = (0.01 * index, -0.01, 0.84)
-        result = dataclasses.replace(RESULT, episode_return=index / count, final_position=position)
+        result = dataclasses.replace(RESULT, episode_return=best * index / count, final_position=position)
         run.append_episode(index, dataclasses.replace(spec, seed=index), result)
     return run
 
@@ -86,6 +86,16 @@ def test_runs_of_different_length_and_algorithm_share_a_figure(tmp_path: Path, d
     draw_figures([*runs, run_with_episodes(tmp_path / "cma", "stepping", 20, "cma-es")], tmp_path / "out")
     words = ["CMA-ES", "NAF, 3 runs", "random warm-up of some"]
     assert words_of(drawn["figure_4_reward_and_frequency"]) == words
+
+
+def test_several_runs_are_a_median_between_quartiles(tmp_path: Path, drawn: Drawn) -> None:
+    runs = [run_with_episodes(tmp_path / f"{best}", "stepping", 20, best=best) for best in (0.0, 1.0, 2.0, 4.0, 8.0)]
+    draw_figures(runs, tmp_path / "out")
+    (axis, _) = drawn["figure_4_reward_and_frequency"].axes
+    (band,), (*_, line) = axis.collections, axis.lines
+    x, y = np.array(band.get_paths()[0].vertices).T
+    last = y[x == x.max()]
+    assert 2.0 * last.min() == last.max() / 2.0 == pytest.approx(np.ravel(line.get_ydata())[-1])
 
 
 def test_axes_and_lines_have_their_names(tmp_path: Path, drawn: Drawn) -> None:

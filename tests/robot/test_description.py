@@ -9,7 +9,7 @@ from laboratory import need
 
 from sarah.errors import DescriptionError
 from sarah.robot.description import ANKLE_JOINTS, GROUPS, check_urdf, describe_robot, model_of
-from sarah.robot.dimensions import default_dimensions, known_dimensions
+from sarah.robot.dimensions import check_dimensions, default_dimensions, known_dimensions
 from sarah.robot.links_and_joints import inertia_of, links_and_joints, place_of
 from sarah.robot.reading import ACTUATED_JOINTS
 from sarah.robot.scale import POWERS
@@ -71,6 +71,13 @@ def test_every_dimension_has_unit_meaning_and_range() -> None:
 @pytest.mark.parametrize("name", list(default_dimensions()))
 def test_every_dimension_reaches_the_urdf(name: str) -> None:
     assert describe_robot({name: default_dimensions()[name] * 1.01}).urdf != describe_robot().urdf
+
+
+def test_the_ends_of_a_dimensions_range_are_allowed() -> None:
+    for name in ("thigh_length", "torso_mass"):
+        known = known_dimensions()[name]
+        for end in (known.low, known.high):
+            assert check_dimensions({name: end}) == {name: end}
 
 
 WIDTH = r"sole_half_width 0\.05 \+ contact_radius 0\.01"

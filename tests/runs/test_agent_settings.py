@@ -2,8 +2,6 @@
 
 import dataclasses
 import inspect
-import subprocess
-import sys
 from pathlib import Path
 from typing import Any
 
@@ -20,22 +18,18 @@ from sarah.runs.agent_settings import (
     TD3Settings,
     settings_of,
 )
-from sarah.runs.config import AGENTS, ALGORITHMS, OPTIMISERS, TrainingConfig
+from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.config_files import first_difference, read_config, write_config
-
-PAPER = {"v_layers": (256,) * 3, "mu_layers": (16,) * 4, "l_layers": (80,) * 4, "activation": "sigmoid"}
 
 
 def test_every_algorithm_has_settings() -> None:
-    assert tuple(AGENT_SETTINGS) == ALGORITHMS
-    assert AGENTS == ("naf", "td3", "sac", "ddpg") and OPTIMISERS == ("cma-es", "gp", "tpe", "random")
     for algo in ALGORITHMS:
         assert TrainingConfig(algo=algo).agent == settings_of(algo)()
 
 
 def test_a_preset_is_a_source_of_defaults() -> None:
     paper = NAFSettings(preset="paper", l_layers=(40,))
-    assert dataclasses.asdict(paper).items() >= {**PAPER, "l_layers": (40,), "squash_mu": False}.items()
+    assert (paper.v_layers, paper.l_layers, paper.activation, paper.squash_mu) == ((256,) * 3, (40,), "sigmoid", False)
     assert (paper.temperature, paper.elite_share, paper.min_curvature) == (0.0, 0.0, 0.0)
     rest = {item.name for item in dataclasses.fields(NAFSettings)} - set(PRESETS["paper"]) - {"preset"}
     assert all(getattr(paper, name) == getattr(NAFSettings(), name) for name in rest)
@@ -127,9 +121,3 @@ def test_every_setting_has_its_help() -> None:
         documented = " ".join(inspect.getdoc(kind) or "" for kind in settings.__mro__)
         for item in dataclasses.fields(settings):
             assert f":param {item.name}: " in documented
-
-
-def test_settings_are_read_without_a_learner() -> None:
-    program = "import sys, sarah.runs.config; print({'torch', 'stable_baselines3'} & {*sys.modules})"
-    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert process.stdout.strip() == "set()"

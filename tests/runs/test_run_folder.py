@@ -10,7 +10,7 @@ from interrupted import EPISODE
 from laboratory import COARSE_PHYSICS
 
 from sarah.episode.episode import simulate
-from sarah.episode.push import Push
+from sarah.episode.push import Push, PushedConfig
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
@@ -20,7 +20,7 @@ from sarah.errors import ConfigurationError, RunFolderError
 from sarah.recorded.folder import new_path
 from sarah.robot.dimensions import dimensions_alike
 from sarah.runs.config import TrainingConfig
-from sarah.runs.episode_words import differences, told_of
+from sarah.runs.episode_words import changed_settings, differences, told_of
 from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_episodes import choose_episode, episode_of_parameters, episodes_of_run
 from sarah.runs.run_folder import RunFolder
@@ -69,11 +69,14 @@ def test_its_episodes_are_there_to_choose_from(run: RunFolder) -> None:
     assert learned.spec == EpisodeSpec((0.1, 0.2, 0.3, 0.4, 0.5), 0, config=EPISODE)
     assert [episode.spec for episode in both] == SPECS and [episode.name for episode in both] == ["0", "1"]
     assert best.name == "best" and best.score == max(episode.score for episode in both)  # type: ignore[type-var]
+    assert both[0].score == simulate(SPECS[0]).score and f"score {both[0].score:.2f}" in both[0].label
     assert best.spec in SPECS and both[1].of(SPECS[1]) is both[1] and both[1].of(SPECS[0]).score is None
     episodes = [learned, best, *both]
     assert choose_episode(episodes, None) is learned and choose_episode(episodes, "1") is both[1]
     with pytest.raises(ConfigurationError, match=r"unknown episode '2' \(allowed: learned, best, 0 to 1\)"):
         choose_episode(episodes, "2")
+    run.result_path.unlink()  # as long as it learns
+    assert [episode.name for episode in episodes_of_run(run)] == ["best", "0", "1"]
 
 
 def test_without_episodes_there_is_nothing_to_show(run: RunFolder) -> None:
@@ -111,9 +114,6 @@ def test_folders_without_a_finished_training_are_refused(tmp_path: Path, monkeyp
     with pytest.raises(RunFolderError, match=r"no parameters.json"):
         RunFolder.open(tmp_path / "begun")
     assert RunFolder.open(tmp_path / "begun", unfinished=True).config() == CONFIG
-    with pytest.raises(RunFolderError, match="is not empty"):  # and it is left alone
-        RunFolder.create(tmp_path, CONFIG)
-    assert [path.name for path in tmp_path.iterdir()] == ["begun"]
     monkeypatch.chdir(tmp_path)
     assert [new_path("stepping", "naf-s3").name for _ in range(2)] == ["naf-s3", "naf-s3-2"]
     assert new_path("stepping", "naf-s3").parent == Path("runs/stepping")
@@ -192,6 +192,24 @@ def test_what_an_option_changes_has_both_values() -> None:
     other = dataclasses.replace(UNPUSHED, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
     stepping = "stepping 0.5, 1, 0, 1, 1 instead of 0.5, 1, 0, 1, 0.75"
     assert list(differences(changed, other)) == ["payload 3 instead of 0", stepping]
+    assert list(differences(PushedConfig(push=UNPUSHED.push), UNPUSHED)) == []  # only one of both has P1 to P5
+
+
+@pytest.mark.parametrize(
+    ("payload", "of_subject", "words"),
+    [
+        (0.0, 0.0, []),
+        (3.0, 0.0, ["payload 3"]),
+        (3.0, 3.0, ["payload 3"]),
+        (3.0, 5.0, ["payload 3 instead of 5"]),
+        (0.0, 5.0, ["payload 0 instead of 5"]),
+    ],
+)
+def test_a_special_setting_that_was_not_kept_has_both_values(
+    payload: float, of_subject: float, words: list[str]
+) -> None:
+    subject = dataclasses.replace(BALANCE.episode, payload=of_subject)
+    assert list(changed_settings(BALANCE, dataclasses.replace(subject, payload=payload), subject)) == words
 
 
 def test_the_ground_is_told_as_the_seed_draws_it(still: Trace) -> None:

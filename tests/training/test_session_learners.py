@@ -1,6 +1,7 @@
 """The learners of a session, on robots that are formulas."""
 
 import dataclasses
+import math
 from collections.abc import Callable
 
 import numpy as np
@@ -9,6 +10,7 @@ from operated import START, FormulaRobot
 
 from sarah.operation.settings import BOX, SHIPPED, Parameters
 from sarah.operation.window import Window
+from sarah.training.careful import CarefulSearch
 from sarah.training.session_learners import LEARNERS
 
 TOP = START + 0.15 * np.array([1, -1, 1, 1, -1, 1, -1, 1, -1])
@@ -76,6 +78,22 @@ def test_it_follows_a_robot_that_changes_slowly() -> None:
     robot = operated("careful", drifting, minutes=25.0)
     kept = drifting(TOP, 25.0)
     assert robot.mean_reward(20.0) > kept + 0.6 * (0.9 - kept)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_where_little_is_known_trials_are_small(seed: int) -> None:
+    """A trial may lose a tenth, and nobody knows yet how steep it is."""
+    search = CarefulSearch(BOX, seed, SHIPPED)
+    search.tell(search.ask(), 0.8)
+    assert 0.0 < math.dist(BOX.shares(search.ask()), START) < 0.1
+
+
+def test_in_the_last_window_there_is_nothing_to_gain_by_a_trial() -> None:
+    last, before = (CarefulSearch(BOX, 0, SHIPPED) for _ in range(2))
+    for search, left in ((last, 1.0), (before, 2.0)):
+        for _ in range(8):
+            search.tell(asked := search.ask(left), 0.8)
+        assert (asked == SHIPPED) == (search is last)
 
 
 def test_a_single_bad_window_is_no_change() -> None:

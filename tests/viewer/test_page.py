@@ -18,9 +18,12 @@ import pytest
 import terminal
 
 from sarah.episode.episode import simulate
+from sarah.episode.push import Push
 from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.operation.settings import OperationConfig
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
+from sarah.runs.config import TrainingConfig
 from sarah.runs.run_episodes import episodes_of_run
 from sarah.runs.run_folder import RunFolder
 from sarah.runs.session import SessionSpec
@@ -33,6 +36,22 @@ CHROMIUM = shutil.which("chromium")
 SOFTWARE_WEBGL = ["--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 PATIENCE = 120_000
 """Milliseconds; a busy machine without a GPU draws less than one picture a second."""
+CONFIG = BalanceConfig(time_limit=6.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)))
+TRIED = ((0.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.5, 0.0), (-2.0, 1.0, 0.0, 2.0))
+LEARNED = (0.8, 0.1, 0.3, -0.1)
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    """A training of three episodes."""
+    path = tmp_path_factory.mktemp("runs") / "balance"
+    run = RunFolder.create(path, TrainingConfig(task="balance", episodes=3, episode=CONFIG))
+    for index, parameters in enumerate(TRIED):
+        spec = EpisodeSpec(parameters, 2**31 + index, "balance", CONFIG)
+        result = simulate(spec)
+        run.append_episode(index, spec, result)
+    run.write_parameters({"parameters": dict(zip(BALANCE.parameter_names, LEARNED, strict=True))})
+    return run
 
 
 @pytest.fixture(scope="module")

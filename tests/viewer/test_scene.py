@@ -5,6 +5,7 @@ import io
 import math
 import time
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 import pytest
@@ -21,7 +22,9 @@ from sarah.runs.run_episodes import episode_of_parameters
 from sarah.scenery.camera import View
 from sarah.simulation.terrain import Terrain
 from sarah.viewer.page import Page
-from sarah.viewer.scene import FIRST_CAMERA, WINDOW, RobotScene, arrow, first_camera, status_place
+from sarah.viewer.plots import CHARTS, Plots
+from sarah.viewer.scenario import Scenario
+from sarah.viewer.scene import FIRST_CAMERA, WINDOW, RobotScene, arrow, channels, first_camera, status_place
 from sarah.viewer.server import serving
 
 SPEC = EpisodeSpec((0.0,) * 4, 0, "balance", BalanceConfig(time_limit=1.5, push=Push(0.0), physics=COARSE_PHYSICS))
@@ -110,13 +113,36 @@ def test_an_arrow_is_as_long_as_its_force_is_strong_up_to_its_limit() -> None:
     assert lengths[1] == pytest.approx(2 * lengths[0]) and lengths[2] == lengths[3] > lengths[1]
 
 
+def test_plots_show_their_window_of_time_and_its_values(trace: Trace) -> None:
+    quick = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, step_frequency=2.0))
+    with serving("127.0.0.1", 8080) as server:
+        plots = Plots(server.gui)
+        plots.load(trace, Scenario.of(quick))
+        plots.show(1.2)
+        charts: Any = plots.charts
+        for chart, shown in zip(CHARTS, charts, strict=True):
+            low, high = shown.scales["y"]["range"]
+            assert high - low > 0.99 * chart.smallest_span and all(
+                low < np.median(line) < high for line in shown.data[4:]
+            )
+            assert (
+                shown.scales["x"]["range"] == (trace.time[0], trace.time[-1]) == (shown.data[0][0], shown.data[0][-1])
+            )
+    assert set(shown.data[-1]) == {2.0}  # the frequency that is best for the reward
+
+
+def test_colours_are_red_green_and_blue() -> None:
+    assert channels("#0172B3") == (1, 0x72, 0xB3)
+
+
 def test_nothing_is_played_before_somebody_looks() -> None:
     episode = episode_of_parameters((0.4, 1.3, 0.1, 1.0, 1.0))
     short = dataclasses.replace(episode.spec.config, time_limit=3.0, physics=COARSE_PHYSICS)
     episode = episode.of(dataclasses.replace(episode.spec, config=short))
     with serving("127.0.0.1", 8080) as server:
         page = Page(server, [episode], episode)
-        while not page.frames:
+        deadline = time.monotonic() + 60.0
+        while not page.frames and time.monotonic() < deadline:
             time.sleep(0.02)
         time.sleep(0.5)
         assert page.frames == 1

@@ -1,7 +1,6 @@
-"""Episodes that the viewer can show, and what its sliders make of them."""
+"""What the page's sliders make of an episode, and what its table leaves out."""
 
 import dataclasses
-import shutil
 from pathlib import Path
 
 import pytest
@@ -15,57 +14,14 @@ from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import push_of
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
-from sarah.errors import ConfigurationError, RunFolderError
 from sarah.logs.played import LoggedResult, played
-from sarah.reports.transfer import ENGINES
 from sarah.robot.description import describe_robot
-from sarah.runs.run_episodes import choose_episode, episodes_of_run
-from sarah.runs.run_folder import RunFolder
-from sarah.simulation.engines import default_engine
 from sarah.simulation.terrain import Terrain, draw_ground
 from sarah.viewer.results import comparison
 from sarah.viewer.scenario import Scenario
 
 PUSHED = BalanceConfig(time_limit=4.0, push=Push(newtons=(40.0, 60.0), at_seconds=(2.0, 3.0)), physics=COARSE_PHYSICS)
 LEARNED = (0.8, 0.1, 0.3, -0.1)
-
-
-def test_every_episode_of_a_run_is_played_exactly(run: RunFolder) -> None:
-    choices = episodes_of_run(run)
-    assert [choice.name for choice in choices] == ["learned", "best", "0", "1", "2"]
-    for choice in choices[2:]:
-        assert simulate(choice.spec).score == choice.score
-        assert f"score {choice.score:.2f}" in choice.label
-    assert choices[0].spec == EpisodeSpec(run.parameters(), 0, "balance", run.config().episode)
-    assert choices[1].score == max(choice.score or 0.0 for choice in choices[2:])
-    assert choose_episode(choices, "2").spec.parameters == (-2.0, 1.0, 0.0, 2.0)
-    with pytest.raises(ConfigurationError, match=r"unknown episode '7' \(allowed: learned, best, 0 to 2\)"):
-        choose_episode(choices, "7")
-
-
-def test_an_episode_in_the_other_engine_has_no_noted_score(run: RunFolder) -> None:
-    choice = episodes_of_run(run)[2]
-    own = default_engine()
-    (another,) = (engine for engine in ENGINES if engine != own)
-    config = dataclasses.replace(choice.spec.config, engine=another)
-    other = choice.of(dataclasses.replace(choice.spec, config=config))
-    assert other.spec.config.engine == another and other.spec.seed == choice.spec.seed and other.score is None
-    assert choice.of(choice.spec) == choice and choice.spec.config.engine == own
-
-
-def test_an_unfinished_run_can_be_played_and_a_damaged_one_is_named(run: RunFolder, tmp_path: Path) -> None:
-    copy = tmp_path / "copy"
-    shutil.copytree(run.path, copy)
-    (copy / "parameters.json").unlink()
-    unfinished = RunFolder.open(copy, unfinished=True)
-    assert [choice.name for choice in episodes_of_run(unfinished)] == ["best", "0", "1", "2"]
-    with (copy / "episodes.csv").open("a") as file:
-        file.write("3,torn")
-    with pytest.raises(RunFolderError, match=r"copy/episodes.csv cannot be read: it has more than 4 lines"):
-        episodes_of_run(unfinished)
-    (copy / "episodes.csv").unlink()
-    with pytest.raises(RunFolderError, match="has no episodes to show yet"):
-        episodes_of_run(unfinished)
 
 
 def test_sliders_that_stand_still_change_nothing() -> None:
