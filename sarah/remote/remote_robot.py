@@ -126,6 +126,8 @@ class RemoteRobot(OperatedRobot):
                 self._gone_since = self._gone_since or time.monotonic()
                 reason = str(error)
             else:
+                if isinstance(answer, Answer) and answer.outcome is Outcome.WAITING:
+                    continue
                 if isinstance(answer, Measured) or answer.outcome not in LOST:
                     break
                 reason = f"{answer.outcome.value}: {answer.reason}"
@@ -152,7 +154,7 @@ class RemoteRobot(OperatedRobot):
             if answer.outcome is Outcome.WAITING:
                 self._say_once(answer.reason)
                 self._pause(0.0)
-            elif answer.is_final or request.window is None:
+            if answer.is_final or request.window is None:
                 return answer
         raise RobotError("the robot did not answer to the end")
 
