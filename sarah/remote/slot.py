@@ -152,7 +152,8 @@ class Slot:
             asked.reply(moment.answer(Outcome.APPLIED))
         elif kind == "step":
             if not supervisor.is_waiting:
-                words = "stops: ask again when it stands" if supervisor.state is State.STOPPING else "steps already"
+                is_stopping = self._is_held or supervisor.state is State.STOPPING
+                words = "stops: ask again when it stands" if is_stopping else "steps already"
                 asked.reply(moment.answer(Outcome.REFUSED, f"the robot {words}"))
                 return
             self._is_held = False
