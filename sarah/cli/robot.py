@@ -179,6 +179,8 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
             if (is_over or is_interrupted()) and not _still_moves(loop):
                 break
     progress.report(loop.driver, options.real_time)
+    if server is not None and server.failure:
+        print(f"something was not read or sent: {server.failure}", file=sys.stderr)
     if log is not None and (log.dropped or log.failure):
         print(f"{log.dropped} messages are not in {options.log}: {log.failure or 'the disk was slow'}", file=sys.stderr)
 
