@@ -107,7 +107,7 @@ class ControlLoop:
         taken = driver.read()
         if driver.ended:
             return False
-        now = driver.now()
+        now = float(driver.now())  # a clock of numpy's would be in all that is logged and sent
         if taken is not None and not self._is_checked:
             check_first(taken, now, self.dt)
             self._is_checked = True
