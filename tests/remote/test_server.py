@@ -53,6 +53,24 @@ def test_a_robot_stays_within_reach_when_something_cannot_be_sent(monkeypatch: p
         assert isinstance(server, Server) and server.failure == "TypeError: no JSON"
 
 
+def test_nobody_else_answers_or_reports_in_the_robots_name() -> None:
+    endpoint, heard = Endpoint(f"tcp/127.0.0.1:{free_port()}"), list[Telemetry]()
+    with robot(endpoint), Client(endpoint) as client, closing(endpoint.opened(listens=False)) as stranger:
+
+        def answer(query: Any) -> None:
+            query.reply(REQUESTS, to_json(Answer(Outcome.REFUSED, "a stranger's")))
+            query.drop()
+
+        queryable = stranger.declare_queryable(REQUESTS, answer)
+        assert [answer.outcome for answer in client.ask(Request("stand"))] == [Outcome.APPLIED]
+        for telemetry in client.telemetry():
+            stranger.put(TELEMETRY, b"{}")
+            heard.append(telemetry)
+            if len(heard) == 5:
+                break
+        queryable.undeclare()
+
+
 def test_a_unix_socket_is_the_users_alone(tmp_path: Path) -> None:
     endpoint = Endpoint(f"unixsock-stream/{tmp_path}/robot")
     with robot(endpoint), Client(endpoint) as client:
