@@ -165,11 +165,11 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
             print(_simulated(options, spec), file=sys.stderr)
         values = {**vars(loop.parameters), **vars(loop.balance)}
         print(", ".join(f"{name} {value:.3g}" for name, value in values.items()), file=sys.stderr)
-        if not options.read_only:
-            stack.callback(loop.driver.off)
         log = None if options.log is None else stack.enter_context(_logged(options, spec, loop))
         if log is not None and meter is not None:
             meter.watch = partial(_log_window, log, itertools.count(), loop.dt)
+        if not options.read_only:
+            stack.callback(loop.driver.off)  # before the log is completed, for which a disk may take its time
         if options.real_time:
             print(stack.enter_context(undisturbed(() if server is None else (server.thread,))), file=sys.stderr)
         if options.driver is not None:
@@ -179,6 +179,8 @@ def _run(options: RobotOptions, spec: EpisodeSpec, is_interrupted: Callable[[], 
             if (is_over or is_interrupted()) and not _still_moves(loop):
                 break
     progress.report(loop.driver, options.real_time)
+    if server is not None and server.failure:
+        print(f"something was not read or sent: {server.failure}", file=sys.stderr)
     if log is not None and (log.dropped or log.failure):
         print(f"{log.dropped} messages are not in {options.log}: {log.failure or 'the disk was slow'}", file=sys.stderr)
 

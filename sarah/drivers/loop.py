@@ -18,7 +18,7 @@ from sarah.robot.reading import SensorReading
 class LoopTick(NamedTuple):
     """What happened in a tick of the loop.
 
-    :param seconds: time since the loop began, in s
+    :param seconds: time since the loop began, in s, which never goes back
     :param reading: newest reading; ``None`` if there is none
     :param age: age of the reading, in s
     :param controller: controller, with its targets
@@ -107,7 +107,7 @@ class ControlLoop:
         taken = driver.read()
         if driver.ended:
             return False
-        now = driver.now()
+        now = float(driver.now())  # a clock of numpy's would be in all that is logged and sent
         if taken is not None and not self._is_checked:
             check_first(taken, now, self.dt)
             self._is_checked = True
@@ -116,6 +116,8 @@ class ControlLoop:
         if self.ticks == self.standing_ticks:
             controller.set_parameters(self.parameters, self.balance)
         passed, self._last = now - self._last, now
+        if passed < 0.0:  # the clock has jumped back: the loop's time goes on
+            self._began += passed - self.dt
         reading, age = (None, 0.0) if taken is None else (taken.reading, now - taken.taken)
         if not age >= -self.dt:  # of a clock that has jumped: nobody knows how old it is
             reading, age = None, 0.0

@@ -33,7 +33,7 @@ class Outcome(str, Enum):
     ENDED = "ended"
     """The robot's program ended."""
     WAITING = "waiting"
-    """The robot cannot do it now, and will when it can."""
+    """The robot cannot do it now, and will when it can. If the answer is final, it has to be asked again."""
     BUSY = "busy"
     """A learner operates the robot."""
 

@@ -37,6 +37,22 @@ LARGEST_TRANSPORT_BYTES = 65536
 """Length of a message in bytes beyond which Zenoh does not put it together."""
 MOST_SESSIONS = 32
 """Number of programs that are connected at the same time."""
+ROBOTS_ALONE = {
+    "enabled": True,
+    "default_permission": "allow",
+    "rules": [
+        {
+            "id": "robot's",
+            "permission": "deny",
+            "flows": ["ingress"],
+            "messages": ["put", "delete", "declare_queryable", "reply"],
+            "key_exprs": ["**"],
+        }
+    ],
+    "subjects": [{"id": "everybody"}],
+    "policies": [{"rules": ["robot's"], "subjects": ["everybody"]}],
+}
+"""What Zenoh does not take from those who reach a robot: answers and telemetry are the robot's alone."""
 BLOCKED_MICROSECONDS = 200_000
 """Time for which a program that does not read its answers is waited for, before its connection is closed, in us."""
 
@@ -108,6 +124,7 @@ class Endpoint:
             "connect": none if listens else ends,
             "scouting": {"multicast": {"enabled": False}, "gossip": {"enabled": False}, "delay": 0},
             "adminspace": {"enabled": False},
+            **({"access_control": ROBOTS_ALONE} if listens else {}),
             "transport": {
                 "link": link,
                 "unicast": {"max_sessions": MOST_SESSIONS, "open_timeout": round(1000 * OPEN_SECONDS)},

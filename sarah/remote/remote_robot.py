@@ -21,7 +21,7 @@ RETRY_SECONDS = 1.0
 """Time after which a lost window is asked for again, in s."""
 GONE_SECONDS = 120.0
 """Default of the time after which a learner gives up a robot that has gone, in s."""
-LOST = (Outcome.STOPPED, Outcome.OVERTAKEN, Outcome.ENDED, Outcome.BUSY)
+LOST = (Outcome.STOPPED, Outcome.ENDED, Outcome.BUSY)
 """What becomes of a window that has to be asked for again."""
 GONE = (Outcome.ENDED, Outcome.BUSY)
 """Answers of a robot that its learner does not have."""
@@ -114,7 +114,7 @@ class RemoteRobot(OperatedRobot):
     def _patiently(self, request: Request) -> Answer | Measured:
         """Ask, and again after what was lost, until the robot has been gone for too long.
 
-        :raises RobotError: if it has
+        :raises RobotError: if it has, or another process asks for the same learner
         :raises ConfigurationError: if it refuses
         """
         self._gone_since = None
@@ -126,6 +126,8 @@ class RemoteRobot(OperatedRobot):
                 self._gone_since = self._gone_since or time.monotonic()
                 reason = str(error)
             else:
+                if isinstance(answer, Answer) and answer.outcome is Outcome.WAITING:
+                    continue
                 if isinstance(answer, Measured) or answer.outcome not in LOST:
                     break
                 reason = f"{answer.outcome.value}: {answer.reason}"
@@ -133,6 +135,8 @@ class RemoteRobot(OperatedRobot):
                 raise RobotError(f"{reason}; gave up after {self._gone_seconds:g} s")
             self._say_once(f"{reason}; asking again, for {self._gone_seconds:g} s")
             self._pause(RETRY_SECONDS)
+        if isinstance(answer, Answer) and answer.outcome is Outcome.OVERTAKEN:
+            raise RobotError("another process operates the robot for the same session, such as a copy of its folder")
         if isinstance(answer, Answer) and answer.outcome is Outcome.REFUSED:
             raise ConfigurationError(f"the robot refuses the parameters of window {self.windows}: {answer.reason}")
         self._said = ""
@@ -152,7 +156,7 @@ class RemoteRobot(OperatedRobot):
             if answer.outcome is Outcome.WAITING:
                 self._say_once(answer.reason)
                 self._pause(0.0)
-            elif answer.is_final or request.window is None:
+            if answer.is_final or request.window is None:
                 return answer
         raise RobotError("the robot did not answer to the end")
 

@@ -59,6 +59,8 @@ class Server:
         self._has_arrived = threading.Event()
         self._leaving: SimpleQueue[Callable[[], None]] = SimpleQueue()
         self._is_closed = False
+        self.failure = ""
+        """First mistake that came up while a request was read or something was sent; empty while all is well."""
         self._session = endpoint.opened(listens=True)
         try:
             self._listen()
@@ -115,9 +117,12 @@ class Server:
     def _serve(self) -> None:
         """Receive and send until the server is closed."""
         while not self._is_closed:
-            self._send(time.monotonic() + READ_SECONDS)
-            if (query := self._queries.try_recv()) is not None:
-                self._receive(query)
+            try:
+                self._send(time.monotonic() + READ_SECONDS)
+                if (query := self._queries.try_recv()) is not None:
+                    self._receive(query)
+            except Exception as error:  # a robot that steps has to stay within reach, whatever it is
+                self.failure = self.failure or f"{type(error).__name__}: {error}"
 
     def _send(self, end: float) -> None:
         """Send what there is, and wait for more until a time."""

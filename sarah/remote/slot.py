@@ -22,8 +22,9 @@ from sarah.remote.requests import LARGEST_CHANGE, Request, merged, too_large
 
 UPRIGHT_SECONDS = 2.0
 """Time for which a robot that fell must stand upright before a learner's window lets it step again, in s."""
-TOLD_SECONDS = 5.0
-"""Time after which a learner whose window waits hears why, again and again, in s."""
+ASKED_SECONDS = 5.0
+"""Time for which the window of a robot that has fallen or is to stand waits, before its learner has to ask again, in s:
+a learner that has gone moves nothing."""
 LEARNER_SECONDS = 10.0
 """Time after a learner's last window for which the robot is its alone, in s of the computer's clock."""
 
@@ -45,12 +46,12 @@ class Waiting:
 
     :param asked: the request
     :param since: time since the robot began at which it came, in s
-    :param told: time since the robot began at which whoever asked last heard why it waits, in s
+    :param hindered_ticks: number of ticks for which something has kept the robot from it
     """
 
     asked: Asked
     since: float
-    told: float = float("-inf")
+    hindered_ticks: int = 0
 
 
 @dataclass(frozen=True)
@@ -86,11 +87,13 @@ class Slot:
         clock: Callable[[], float] = time.monotonic,
     ) -> None:
         self._standing_ticks, self._upright_needed = round(STAND_SECONDS / dt), round(UPRIGHT_SECONDS / dt)
+        self._asked_ticks = round(ASKED_SECONDS / dt)
         self._largest_change, self._meter, self._clock = largest_change, meter, clock
         self._waiting: Waiting | None = None
         self._trial: Trial | None = None
         self._window: tuple[Measurement, Asked] | None = None
         self._learner, self._heard = "", float("-inf")
+        self._waited_since: float | None = None
         self._ticks = self._upright_ticks = 0
         self._is_held = False
 
@@ -149,7 +152,8 @@ class Slot:
             asked.reply(moment.answer(Outcome.APPLIED))
         elif kind == "step":
             if not supervisor.is_waiting:
-                words = "stops: ask again when it stands" if supervisor.state is State.STOPPING else "steps already"
+                is_stopping = self._is_held or supervisor.state is State.STOPPING
+                words = "stops: ask again when it stands" if is_stopping else "steps already"
                 asked.reply(moment.answer(Outcome.REFUSED, f"the robot {words}"))
                 return
             self._is_held = False
@@ -167,7 +171,10 @@ class Slot:
         overtaken = moment.answer(Outcome.OVERTAKEN, "newer parameters came before it was applied")
         if self._waiting is not None:
             self._waiting.asked.reply(overtaken)
-        self._waiting = Waiting(asked, moment.tick.seconds)
+        since = moment.tick.seconds
+        if self._waited_since is not None and asked.request.kind == "window" and self._is_heard:
+            since = self._waited_since
+        self._waiting, self._waited_since = Waiting(asked, since), None
         if asked.request.kind == "window":
             self._learner = asked.request.learner
         if self._window is not None:
@@ -179,7 +186,12 @@ class Slot:
         is_at_it = self._window is not None or (
             self._waiting is not None and self._waiting.asked.request.kind == "window"
         )
-        return learner != self._learner and (is_at_it or self._clock() < self._heard + LEARNER_SECONDS)
+        return learner != self._learner and (is_at_it or self._is_heard)
+
+    @property
+    def _is_heard(self) -> bool:
+        """Whether the last window of a learner is not long over."""
+        return self._clock() < self._heard + LEARNER_SECONDS
 
     def _refusal(self, asked: Asked, supervisor: Supervisor) -> str:
         """Reason to refuse parameters, once the robot has some of its own to compare them with."""
@@ -225,9 +237,7 @@ class Slot:
             return
         asked = waiting.asked
         if asked.request.kind == "window" and (hindrance := self._hindrance(supervisor)):
-            if moment.tick.seconds >= waiting.told + TOLD_SECONDS:
-                waiting.told = moment.tick.seconds
-                asked.reply(moment.answer(Outcome.WAITING, hindrance, is_final=False))
+            self._let_wait(waiting, moment, hindrance)
             return
         self._waiting = None
         if reason := self._refusal(asked, supervisor):  # the supervisor may have put others back meanwhile
@@ -241,6 +251,15 @@ class Slot:
             self._begin_window(asked, moment, waiting.since)
         else:
             self._begin_trial(asked, moment)
+
+    def _let_wait(self, waiting: Waiting, moment: Moment, hindrance: str) -> None:
+        """Tell a learner why its window waits, and forget the window if it is not asked for again."""
+        is_over = waiting.hindered_ticks >= self._asked_ticks
+        if is_over or waiting.hindered_ticks == 0:
+            waiting.asked.reply(moment.answer(Outcome.WAITING, hindrance, is_over))
+        waiting.hindered_ticks += 1
+        if is_over:
+            self._waiting, self._waited_since, self._heard = None, waiting.since, self._clock()
 
     def _hindrance(self, supervisor: Supervisor) -> str:
         """Reason for which a window cannot begin yet; empty if it can."""

@@ -8,6 +8,8 @@ import pytest
 from laboratory import need
 from terminal import Answer, done, run
 
+from sarah.logs.robot_log import RobotLog
+
 
 @pytest.fixture(autouse=True)
 def quick() -> None:
@@ -85,6 +87,14 @@ def test_a_signal_lets_it_stop_and_stand(own: Path) -> None:
     assert "off after 15" in process.stdout and ", 0 steps\n" in process.stdout and "later than 2 ms" in process.stdout
     assert "SCHED_FIFO" in process.stderr or "not granted" in process.stderr
     assert os.sched_getscheduler(0) == scheduler
+
+
+def test_a_robot_is_let_go_before_its_log_is_completed(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    close = RobotLog.close
+    monkeypatch.setattr(RobotLog, "close", lambda log: (print("the log is completed"), close(log)))
+    words = ("--driver", "my_robot.py:ROBOT", "--real-time", "--log", "run.mcap", "--seconds", "1.1")
+    said = done("sarah-robot", "balance", *words, cwd=own.parent).stdout
+    assert 0 < said.index("off after") < said.index("the log is completed")
 
 
 def test_a_taller_robot_may_go_where_it_wants_too(tmp_path: Path) -> None:

@@ -6,6 +6,7 @@ import itertools
 import re
 from typing import Any
 
+import numpy as np
 import pytest
 from laboratory import need
 
@@ -137,6 +138,16 @@ def test_a_robot_of_ones_own_needs_to_read_and_to_send(is_read_only: bool) -> No
     assert balance is not None
     ControlLoop(robot, controller, stepping, balance, 0.01, Lockstep(), is_read_only=is_read_only).run()
     assert len(robot.sent) == (0 if is_read_only else 300)
+
+
+def test_a_clock_that_jumps_back_does_not_turn_the_time_of_the_loop_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot, config, ticks = Robot(), supervised(BalanceConfig()), list[LoopTick]()
+    monkeypatch.setattr(robot, "now", lambda: np.float64(0.01 * robot.ticks - (1000.0 if robot.ticks > 150 else 0.0)))
+    controller, (stepping, balance) = controller_for(config, robot.limits), controller_of(BALANCE, V, config)
+    assert balance is not None
+    ControlLoop(robot, controller, stepping, balance, 0.01, Lockstep(), [ticks.append]).run()
+    assert [tick.seconds for tick in ticks] == pytest.approx([0.01 * index for index in range(300)])
+    assert {type(tick.seconds) for tick in ticks} == {float}
 
 
 def test_a_driver_is_found_in_a_file(tmp_path: Any) -> None:

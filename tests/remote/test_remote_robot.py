@@ -118,15 +118,25 @@ def remote(script: Sequence[Any], gone_seconds: float = 60.0) -> tuple[RemoteRob
     return robot, connection, said
 
 
+def test_one_of_two_learners_of_the_same_name_gives_way() -> None:
+    robot, connection, _ = remote([APPLIED, Answer(Outcome.OVERTAKEN, "newer parameters came before it was over")])
+    with pytest.raises(RobotError, match="another process operates the robot for the same session"):
+        robot.run(SHIPPED)
+    assert len(connection.requests) == 1 and robot.windows == 0
+
+
 def test_a_window_that_is_lost_is_asked_for_again_and_the_learner_says_why() -> None:
     lost = [APPLIED, "breaks", "nobody", "nobody", Answer(Outcome.BUSY, "a learner operates the robot")]
     stood = [APPLIED, Answer(Outcome.STOPPED, "asked to stand"), Answer(Outcome.WAITING, "it stands", False)]
-    robot, connection, said = remote([*lost, *stood, APPLIED, dataclasses.replace(MEASURED, reason="stopping: stale")])
+    waited = [Answer(Outcome.WAITING, "it stands"), Answer(Outcome.WAITING, "it stands", False)]
+    robot, connection, said = remote(
+        [*lost, *stood, *waited, APPLIED, dataclasses.replace(MEASURED, reason="stopping: stale")]
+    )
     window = robot.run(SHIPPED)
     assert (window.index, window.begin, window.seconds, window.observed_reward) == (0, 0.0, 6.1, 0.8)
     assert window.score is None and window.worth == 0.8 and window.parameters == SHIPPED
     assert robot.seconds == 6.1 and robot.windows == 1
-    assert len(connection.requests) == 4 and len(set(map(Request.to_json, connection.requests))) == 1
+    assert len(connection.requests) == 5 and len(set(map(Request.to_json, connection.requests))) == 1
     assert [words.partition(";")[0] for words in said] == [
         "the robot has gone",
         "no robot listens",

@@ -3,6 +3,7 @@
 import datetime
 import ipaddress
 import itertools
+import time
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
@@ -16,7 +17,7 @@ from hand_made import DT
 from listening import free_port, robot
 
 from sarah.errors import RobotError
-from sarah.remote.answers import Answer, Outcome, to_json
+from sarah.remote.answers import Answer, Outcome, Telemetry, to_json
 from sarah.remote.client import Client
 from sarah.remote.endpoints import REQUESTS, TELEMETRY, Certificates, Endpoint
 from sarah.remote.requests import LearnedWith, Request
@@ -34,6 +35,40 @@ def test_a_push_is_answered_when_it_is_applied_and_when_it_is_kept() -> None:
         assert client.state().parameters["V1"] == 0.5 and client.state().steps_per_second > 1.0
         (refused,) = client.ask(Request("push", {"V1": 0.6}, LearnedWith(control_rate=50)))
         assert refused.reason == "learned with another robot or controller: control_rate is 50 and not 100"
+
+
+def test_a_robot_stays_within_reach_when_something_cannot_be_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+    def fails(message: Any) -> bytes:
+        if isinstance(message, Telemetry):
+            raise TypeError("no JSON")
+        return to_json(message)
+
+    monkeypatch.setattr("sarah.remote.server.to_json", fails)
+    endpoint = Endpoint(f"tcp/127.0.0.1:{free_port()}")
+    with robot(endpoint) as loop, Client(endpoint) as client:
+        while loop.ticks < 300:
+            time.sleep(0.01)
+        assert [answer.outcome for answer in client.ask(Request("stand"))] == [Outcome.APPLIED]
+        (server,) = loop.observers
+        assert isinstance(server, Server) and server.failure == "TypeError: no JSON"
+
+
+def test_nobody_else_answers_or_reports_in_the_robots_name() -> None:
+    endpoint, heard = Endpoint(f"tcp/127.0.0.1:{free_port()}"), list[Telemetry]()
+    with robot(endpoint), Client(endpoint) as client, closing(endpoint.opened(listens=False)) as stranger:
+
+        def answer(query: Any) -> None:
+            query.reply(REQUESTS, to_json(Answer(Outcome.REFUSED, "a stranger's")))
+            query.drop()
+
+        queryable = stranger.declare_queryable(REQUESTS, answer)
+        assert [answer.outcome for answer in client.ask(Request("stand"))] == [Outcome.APPLIED]
+        for telemetry in client.telemetry():
+            stranger.put(TELEMETRY, b"{}")
+            heard.append(telemetry)
+            if len(heard) == 5:
+                break
+        queryable.undeclare()
 
 
 def test_a_unix_socket_is_the_users_alone(tmp_path: Path) -> None:

@@ -114,6 +114,15 @@ def test_a_robot_that_stands_takes_them_at_once_and_tries_them_when_it_steps() -
     assert rig.supervisor.state is State.STEPPING and rig.supervisor.generator.hips.parameters.V1 == 0.3
 
 
+def test_one_that_was_asked_to_stand_in_the_same_tick_does_not_step_already() -> None:
+    rig = Rig()
+    rig.step(300)
+    rig.step(1, rig.ask("stand"), rig.ask("step"))
+    assert rig.outcomes(0) == ["applied"] and rig.answers[1][0].reason == "the robot stops: ask again when it stands"
+    rig.step(100)
+    assert rig.supervisor.is_waiting
+
+
 def test_newer_parameters_take_the_slot_and_the_place_on_trial() -> None:
     rig = Rig()
     rig.step(300)
