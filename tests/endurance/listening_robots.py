@@ -108,7 +108,7 @@ def in_this_process(stands: bool) -> Iterator[Robot]:
     shipped = PARAMETER_SETS["balance"].spec
     config: Any = shipped.task.config_of(shipped.config, engine="mujoco", push=NO_PUSH, time_limit=3600.0)
     supervisor = dataclasses.replace(config.supervisor, enabled=True)
-    config = dataclasses.replace(config, supervisor=supervisor, box_half_width=100.0)
+    config = dataclasses.replace(config, supervisor=supervisor)
     endpoint, dt, stop = free_port(), config.physics.control_dt, threading.Event()
     swaps: list[int] = []
     count = iter(range(10**9))
@@ -120,7 +120,7 @@ def in_this_process(stands: bool) -> Iterator[Robot]:
 
     with contextlib.closing(Server(endpoint, LearnedWith.of(config), Slot(dt))) as server:
         spec = EpisodeSpec(shipped.parameters, 0, shipped.task, config)
-        robot, loop = simulated_loop(spec, pacing=RealTime(dt), observers=[look, server])
+        robot, loop = simulated_loop(spec, pacing=RealTime(dt), observers=[look, server], goes_on=True)
         assert isinstance(loop.controller, Supervisor)
         if stands:
             loop.controller.stand()
