@@ -40,6 +40,7 @@ class Differing(NamedTuple):
     slope: float | None = None
 
     def __str__(self) -> str:
+        """Name: what differs, with units."""
         units = {"servos": "/s", "delay": " ms", "load": " kg", "slope": " degrees"}
         given = {name: value for name, value in self._asdict().items() if value is not None}
         return ", ".join(f"{name} {value:g}{units[name]}" for name, value in given.items()) or "as simulated"
@@ -84,7 +85,7 @@ HELD_OUT = (
     Differing(load=5.0),
     Differing(slope=6.0),
 )
-"""Robots for judging, by a rule: half way between those of the logs, and a step beyond them. ``as simulated`` is in both
+"""Robots for judging, by a rule: half way between those of the logs, and a step beyond. ``as simulated`` is in both
 lists, with other seeds."""
 FIRST_LOGGED_SEED = 2000
 FIRST_HELD_OUT_SEED = 3000
@@ -112,15 +113,17 @@ class LoggedRobots(Experiment):
         config = ROBOTS[robot].config(self.minutes)
         random = np.random.default_rng(FIRST_LOGGED_SEED)
         shares = np.array(BOX.shares(SHIPPED)) + random.uniform(-REACH, REACH, (self.sets, len(PARAMETERS)))
-        yield from _rows("shipped", _tried(config, seed, [SHIPPED] * self.windows))
-        yield from _rows("random", _tried(config, seed, [BOX.at_shares(np.clip(share, 0.0, 1.0)) for share in shares]))
+        yield from window_rows("shipped", tried(config, seed, [SHIPPED] * self.windows))
+        yield from window_rows(
+            "random", tried(config, seed, [BOX.at_shares(np.clip(share, 0.0, 1.0)) for share in shares])
+        )
         for learner in ("careful", "cma-es"):
             session = run_session(SessionSpec(SHIPPED, learner, seed, config))
-            yield from _rows(learner, session.windows)
-            yield from _rows(f"left by {learner}", _tried(config, seed, [session.parameters] * self.windows))
+            yield from window_rows(learner, session.windows)
+            yield from window_rows(f"left by {learner}", tried(config, seed, [session.parameters] * self.windows))
 
 
-def _tried(config: OperationConfig, seed: int, sets: Sequence[Parameters]) -> list[Window]:
+def tried(config: OperationConfig, seed: int, sets: Sequence[Parameters]) -> list[Window]:
     """Windows of sets, one after the other."""
     robot = RobotInOperation(dataclasses.replace(config, minutes=600.0), seed)
     try:
@@ -129,7 +132,7 @@ def _tried(config: OperationConfig, seed: int, sets: Sequence[Parameters]) -> li
         robot.close()
 
 
-def _rows(log: str, windows: Sequence[Window]) -> Iterator[Row]:
+def window_rows(log: str, windows: Sequence[Window]) -> Iterator[Row]:
     """Rows of windows, with the columns of a session's table."""
     for window in windows:
         plain = window.plain()

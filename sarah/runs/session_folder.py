@@ -6,6 +6,7 @@ windows.csv                                one row per window
 events.out.tfevents.*                      curves for TensorBoard
 parameters.json                            the parameters that the robot is left with
 session.png  session.pdf                   score over time, with falls and changes
+recognition.json                           what logs teach, if it was given to learner recognise
 frozen/                                    the same session without learning, if it is compared with that
 """
 
@@ -46,15 +47,19 @@ class SessionFolder(Folder):
         super().__init__(path, SESSION)
         self.picture_path = path / "session"
         self.frozen_path = path / "frozen"
+        self.recognition_path = path / "recognition.json"
         self._windows_path = path / "windows.csv"
 
     @classmethod
-    def create(cls, path: Path, spec: SessionSpec, compare_frozen: bool = False) -> SessionFolder:
+    def create(
+        cls, path: Path, spec: SessionSpec, compare_frozen: bool = False, recognition: str = ""
+    ) -> SessionFolder:
         """Make a new folder, and write the specification.
 
         :param path: path of the folder, which must be new or empty
         :param spec: specification of the session
         :param compare_frozen: whether it is to be compared with the same session without learning
+        :param recognition: text of the recognition, if the specification names one
         :raises RunFolderError: if the folder is not empty or cannot be written
         """
         folder = cls(path)
@@ -62,6 +67,8 @@ class SessionFolder(Folder):
         def write() -> None:
             if compare_frozen:
                 folder.add_frozen(spec)
+            if recognition:
+                replace_text(folder.recognition_path, recognition)
             write_config(spec, folder.specification_path)
 
         folder.begin(write)

@@ -7,16 +7,17 @@ from dataclasses import dataclass
 from functools import partial
 
 from sarah.episode.running_robot import Observer
-from sarah.errors import TrainingInterruptedError, check_type
+from sarah.errors import ResumeError, TrainingInterruptedError, check_type
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import PARAMETERS, Parameters
 from sarah.operation.window import Window
 from sarah.process import apart
+from sarah.recognition.recognition import Recognition, read_recognition
 from sarah.recorded.journal import Journal
 from sarah.runs.event_file import EventFile
 from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
-from sarah.training.session_learners import LEARNERS
+from sarah.training.session_learners import learner_of
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,7 @@ def run_session(
     watch: Callable[[Window], None] = lambda window: None,
     journal: Journal | None = None,
     observers: Sequence[Observer] = (),
+    recognition: Recognition | None = None,
 ) -> SessionResult:
     """Operate a robot from standing to the end of the operation's time.
 
@@ -57,10 +59,16 @@ def run_session(
     :param watch: function that is called with every window
     :param journal: journal of the session, whose windows are not simulated again; without one nothing is recorded
     :param observers: further records of what the robot does, in each window that is simulated
+    :param recognition: recognition that the specification names, if it names one
     :return: the result
-    :raises ResumeError: if the learner asks for other parameters than a window of the journal has
+    :raises ResumeError: if the recognition is another one, or if the learner asks for other parameters than a window of
+        the journal has
     """
     check_type("spec", spec, SessionSpec)
+    if spec.recognition != ("" if recognition is None else recognition.identity):
+        raise ResumeError(
+            f"the session has recognition {spec.recognition or 'of the package'}, and another one is given"
+        )
     windows: list[Window] = []
     with apart() as outside:
 
@@ -71,7 +79,7 @@ def run_session(
 
         robot = RobotInOperation(spec.config, spec.seed, watch_outside, journal, observers)
         try:
-            parameters = LEARNERS[spec.learner](robot, spec.parameters, spec.seed)
+            parameters = learner_of(spec.learner, recognition)(robot, spec.parameters, spec.seed)
         finally:
             robot.close()
     return SessionResult(tuple(windows), parameters)
@@ -113,7 +121,8 @@ def operate(
                 raise TrainingInterruptedError("the session was interrupted")
 
         try:
-            result = run_session(spec, add, journal, observers)
+            recognition = read_recognition(folder.recognition_path) if spec.recognition else None
+            result = run_session(spec, add, journal, observers, recognition)
             journal.check_asked()
         finally:
             if events is not None:

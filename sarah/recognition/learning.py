@@ -1,0 +1,195 @@
+"""Learning from logs: places of the kinds, sets that are worth knowing, and what each is worth on each kind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+import numpy as np
+
+from sarah.control.parameters import Parameters
+from sarah.errors import ConfigurationError
+from sarah.operation.settings import BOX, SHIPPED
+from sarah.recognition.felt import FEATURES, features_of
+from sarah.recognition.logs import LoggedRobot
+from sarah.recognition.recognition import Kind, Layer, Numbers, Recognition
+
+REPEATED = 3
+"""Number of windows from which on a set counts as repeated."""
+SAME = 1e-4
+"""Largest difference of parameters that count as the same: tables may be rounded."""
+LENGTH, DEVIATION, NOISE = 0.3, 0.3, 0.07
+"""Length over which a robot's reward changes, as a share of each range, its standard deviation between far parameters,
+and that of a window's reward around the mean."""
+ROWS_AROUND_BEST, ROWS_AROUND_REFERENCE = 10, 4
+"""Number of rows of each kind that are kept: those that are nearest to its best set, and to the reference. They show
+where rewards fall."""
+FAR = 1.5
+"""Distance beyond which a robot is unknown, over the largest one from a kind to its nearest neighbour."""
+UNITS = 16
+"""Number of units in the hidden layer of a network."""
+
+
+def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Parameters = SHIPPED) -> Recognition:
+    """Learn from logs.
+
+    :param robots: robots of the logs; kinds that were never seen with the reference are left out
+    :param kind: way of learning
+    :param reference: parameters with which robots are recognised
+    :raises ConfigurationError: if there are fewer than two kinds, or each was seen only once
+    """
+    by_kind: dict[str, list[LoggedRobot]] = {}
+    for robot in robots:
+        by_kind.setdefault(robot.kind, []).append(robot)
+    felt = {name: [one for robot in its if len(one := felt_with(robot, reference))] for name, its in by_kind.items()}
+    kinds = {name: its for name, its in by_kind.items() if felt[name]}
+    if len(kinds) < 2 or sum(map(len, (one for name in kinds for one in felt[name]))) < len(kinds) + 2:
+        raise ConfigurationError(
+            "the logs must have two kinds of robots, with several windows of the shipped parameters each, to tell apart"
+        )
+    means = np.array([np.mean([one.mean(axis=0) for one in felt[name]], axis=0) for name in kinds])
+    labels = np.concatenate([[index] * len(one) for index, name in enumerate(kinds) for one in felt[name]])
+    features = np.concatenate([one for name in kinds for one in felt[name]])
+    centre = means.mean(axis=0)
+    whitening = _whitening(features - means[labels])
+    places = (means - centre) @ whitening.T
+    between = np.linalg.norm(places[:, None] - places[None], axis=2) + np.diag(np.full(len(kinds), np.inf))
+    sets = list(dict.fromkeys([reference, *(best_set(robot) for its in kinds.values() for robot in its)]))
+    rewards, deviations = _worth(sets, kinds)
+    return Recognition(
+        kind=kind,
+        conditions=robots[0].conditions,
+        reference=reference,
+        centre=_plain(centre),
+        whitening=_plain(whitening),
+        far=float(_plain(FAR * between.min(axis=1).max())),
+        kinds=tuple(kinds),
+        places=_plain(places),
+        sets=tuple(sets),
+        rewards=_plain(rewards),
+        deviations=_plain(deviations),
+        layers=_LAYERS[kind]((features - centre) @ whitening.T, labels) if kind in _LAYERS else (),
+        rows=tuple(row for index, its in enumerate(kinds.values()) for row in _rows(index, its, reference)),
+    )
+
+
+def rewards_of(robots: Sequence[LoggedRobot]) -> dict[Parameters, list[float]]:
+    """Rewards of each set that robots have tried.
+
+    :param robots: robots of the logs
+    """
+    rewards: dict[Parameters, list[float]] = {}
+    for robot in robots:
+        for window in robot.windows:
+            rewards.setdefault(window.parameters, []).append(window.reward)
+    return rewards
+
+
+def best_set(robot: LoggedRobot) -> Parameters:
+    """The set of a robot whose repeated rewards, less a standard deviation, are highest; else the best single one.
+
+    :param robot: robot of the logs
+    """
+    rewards = rewards_of([robot])
+    repeated = {one: values for one, values in rewards.items() if len(values) >= REPEATED} or rewards
+    return max(repeated, key=lambda one: float(np.mean(repeated[one]) - np.std(repeated[one])))
+
+
+def best_of_all(recognition: Recognition) -> Parameters:
+    """The set that is best on the mean of all kinds.
+
+    :param recognition: what logs teach
+    """
+    return recognition.sets[int(np.argmax(np.mean(recognition.rewards, axis=1)))]
+
+
+def felt_with(robot: LoggedRobot, reference: Parameters) -> np.ndarray:
+    """Features of a robot's windows with the reference, a row each; of those with a fall only if there are no others.
+
+    :param robot: robot of the logs
+    :param reference: parameters
+    """
+    its = [window for window in robot.windows if np.allclose(window.parameters, reference, rtol=0.0, atol=SAME)]
+    its = [window for window in its if not window.fell] or its
+    return np.array([features_of(window.felt, robot.scale) for window in its]).reshape(-1, len(FEATURES))
+
+
+def _rows(index: int, robots: Sequence[LoggedRobot], reference: Parameters) -> list[Numbers]:
+    rewards = rewards_of(robots)
+    tried = list(rewards)
+    places = np.array([BOX.shares(one) for one in tried])
+
+    def nearest(centre: Parameters, count: int) -> list[Parameters]:
+        order = np.argsort(np.linalg.norm(places - BOX.shares(centre), axis=1), kind="stable")
+        return [tried[i] for i in order[:count]]
+
+    best = max(map(best_set, robots), key=lambda one: float(np.mean(rewards[one])))
+    kept = dict.fromkeys([*nearest(best, ROWS_AROUND_BEST), *nearest(reference, ROWS_AROUND_REFERENCE)])
+    return [(float(index), *_plain(np.array(one)), float(_plain(np.mean(rewards[one])))) for one in kept]
+
+
+def _whitening(residuals: np.ndarray) -> np.ndarray:
+    """Matrix that makes the variation within a kind the same in all directions, by a shrunk covariance."""
+    from sklearn.covariance import LedoitWolf
+
+    deviations = np.maximum(residuals.std(axis=0), 1e-2)
+    covariance = LedoitWolf(assume_centered=True).fit(residuals / deviations).covariance_
+    values, vectors = np.linalg.eigh(covariance)
+    whitening: np.ndarray = (vectors / np.sqrt(values)).T / deviations
+    return whitening
+
+
+def _worth(sets: Sequence[Parameters], kinds: Mapping[str, Sequence[LoggedRobot]]) -> tuple[np.ndarray, np.ndarray]:
+    """Expected reward of each set on each kind, and its standard deviation, by a Gaussian process of each kind."""
+    from sklearn.gaussian_process import GaussianProcessRegressor
+    from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+
+    kernel = ConstantKernel(DEVIATION**2) * Matern(LENGTH, nu=2.5) + WhiteKernel(NOISE**2)
+    places = np.array([BOX.shares(one) for one in sets])
+    rewards, deviations = [], []
+    for robots in kinds.values():
+        windows = [window for robot in robots for window in robot.windows][-MOST_WINDOWS:]
+        seen = np.array([window.reward for window in windows])
+        process = GaussianProcessRegressor(kernel, optimizer=None)
+        process.fit(np.array([BOX.shares(window.parameters) for window in windows]), seen - seen.mean())
+        expected, deviation = process.predict(places, return_std=True)
+        rewards.append(expected + seen.mean())
+        deviations.append(np.sqrt(np.maximum(deviation**2 - NOISE**2, 0.0)))
+    return np.array(rewards).T, np.array(deviations).T
+
+
+MOST_WINDOWS = 1000
+"""Number of windows of each kind that its process knows: the last ones. Its time goes with their third power."""
+
+
+def _linear(places: np.ndarray, labels: np.ndarray) -> tuple[Layer, ...]:
+    """Linear discriminant with a shrunk covariance."""
+    from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
+
+    found = LinearDiscriminantAnalysis(solver="lsqr", shrinkage="auto").fit(places, labels)
+    weights, biases = found.coef_, found.intercept_
+    if len(weights) == 1:  # of two kinds, it has the weights of the second one
+        weights, biases = np.concatenate([-weights, weights]) / 2.0, np.concatenate([-biases, biases]) / 2.0
+    return (Layer(_plain(weights), _plain(biases)),)
+
+
+def _network(places: np.ndarray, labels: np.ndarray) -> tuple[Layer, ...]:
+    """Network with one hidden layer."""
+    from sklearn.neural_network import MLPClassifier
+
+    found = MLPClassifier((UNITS,), "tanh", solver="lbfgs", alpha=0.1, max_iter=2000, random_state=0)
+    found.fit(places, labels)
+    weights, biases = [one.T for one in found.coefs_], list(found.intercepts_)
+    if len(biases[-1]) == 1:  # of two kinds, it has one output
+        weights[-1] = np.concatenate([-weights[-1], weights[-1]]) / 2.0
+        biases[-1] = np.concatenate([-biases[-1], biases[-1]]) / 2.0
+    return tuple(Layer(_plain(one), _plain(bias)) for one, bias in zip(weights, biases, strict=True))
+
+
+_LAYERS: dict[str, Callable[[np.ndarray, np.ndarray], tuple[Layer, ...]]] = {"classes": _linear, "network": _network}
+
+
+def _plain(values: np.ndarray | float) -> tuple:  # type: ignore[type-arg]
+    """Nested tuples of numbers with four significant digits."""
+    if np.ndim(values) == 0:
+        return float(f"{values:.4g}")  # type: ignore[return-value]
+    return tuple(_plain(value) for value in values)  # type: ignore[union-attr]
