@@ -32,16 +32,18 @@ class Differing(NamedTuple):
     :param delay: delay of the sensors, in ms
     :param load: payload, in kg
     :param slope: slope of the ground, in degrees; each seed walks it in another direction
+    :param friction: friction coefficient
     """
 
     servos: float | None = None
     delay: float | None = None
     load: float | None = None
     slope: float | None = None
+    friction: float | None = None
 
     def __str__(self) -> str:
         """Name: what differs, with units."""
-        units = {"servos": "/s", "delay": " ms", "load": " kg", "slope": " degrees"}
+        units = {"servos": "/s", "delay": " ms", "load": " kg", "slope": " degrees", "friction": ""}
         given = {name: value for name, value in self._asdict().items() if value is not None}
         return ", ".join(f"{name} {value:g}{units[name]}" for name, value in given.items()) or "as simulated"
 
@@ -53,6 +55,8 @@ class Differing(NamedTuple):
             randomisation["actuator_bandwidth"] = self.servos
         if self.delay is not None:
             randomisation["delay_seconds"] = self.delay / 1000.0
+        if self.friction is not None:
+            randomisation["friction"] = self.friction
         if self.load is not None:
             settings["payload"] = self.load
         if self.slope is not None:
@@ -87,6 +91,8 @@ HELD_OUT = (
 )
 """Robots for judging, by a rule: half way between those of the logs, and a step beyond. ``as simulated`` is in both
 lists, with other seeds."""
+UNKNOWN = (Differing(servos=10.0, friction=0.25), Differing(load=25.0))
+"""Robots for judging of kinds that no log has."""
 FIRST_LOGGED_SEED = 2000
 FIRST_HELD_OUT_SEED = 3000
 REACH = 0.25

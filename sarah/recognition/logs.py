@@ -15,7 +15,7 @@ from sarah.errors import ConfigurationError, SarahError, shortened
 from sarah.files import is_text, read_lines
 from sarah.logs.reading import Log
 from sarah.logs.topics import WINDOWS
-from sarah.number import number, whole_number
+from sarah.number import number
 from sarah.operation.settings import BOX, OperationConfig, Parameters
 from sarah.operation.window import FELT
 from sarah.recognition.recognition import LONGEST_NAME, Conditions
@@ -182,7 +182,7 @@ def _robots(
         if not is_text(word) or len(word) > LONGEST_NAME // 2:
             most = LONGEST_NAME // 2
             raise ConfigurationError(f"{path} names a robot {shortened(word)}: a name is one line of {most} characters")
-    counted = [(whole_number(str(row.get("changes") or 0)), row) for row in rows]
+    counted = [(int(_number(path, row, "changes")) if row.get("changes") else 0, row) for row in rows]
     return [
         LoggedRobot(
             *(f"{word}, change {changes}" if changes else word for word in (name, kind)),
