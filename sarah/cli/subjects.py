@@ -155,7 +155,7 @@ def learned_of(subject: str, task: Task[Any] | None) -> tuple[EpisodeSpec, str |
     if RECOGNITION.owns(Path(subject)):
         from sarah.recognition.folder import RecognitionFolder
 
-        return RecognitionFolder.open(Path(subject)).best().spec, "best of all"
+        return RecognitionFolder.open(Path(subject)).best().spec, "one set for all"
     if Path(subject).is_dir():
         from sarah.runs.run_episodes import learned_episode
         from sarah.runs.run_folder import RunFolder

@@ -27,6 +27,8 @@ from sarah.runs.session_folder import MOST_WINDOWS, SessionFolder
 
 MCAP, TABLE = ".mcap", ".csv"
 """Endings of the names of logs that are files."""
+TIMES = ("settle_seconds", "measure_seconds")
+"""Names of the times of a window."""
 LARGEST_VALUE = 1e6
 """Largest number in a table, by amount."""
 LOWEST_REWARD, HIGHEST_REWARD = -0.01, 1.5
@@ -113,7 +115,7 @@ def _of_session(path: Path) -> list[LoggedRobot]:
     conditions, scale = Conditions.of(spec.config), spec.config.robot.scale
     return [
         LoggedRobot(
-            f"{(kind := _kind_of(spec.config, changes))}, seed {spec.seed}",
+            _robot_of(kind := kind_of(spec.config, changes), spec.seed),
             kind,
             conditions,
             scale,
@@ -123,12 +125,30 @@ def _of_session(path: Path) -> list[LoggedRobot]:
     ]
 
 
-def _kind_of(config: OperationConfig, changes: int) -> str:
-    """Kind of a simulated robot: what differs from the default one. Its seed draws masses and errors of sensors."""
+def kind_of(config: OperationConfig, changes: int = 0) -> str:
+    """Kind of a simulated robot: what differs from the default one. Its seed draws masses and errors of sensors.
+
+    :param config: settings of its operation
+    :param changes: number of changes that have been made
+    """
     values, usual = settings_by_key(config.robot_after(changes)), settings_by_key(OperationConfig().robot)
     physics = ("push.", "physics.")  # what the robot is put through, and how it is simulated
     differing = [f"{key} {values[key]}" for key in values if values[key] != usual[key] and not key.startswith(physics)]
     return (", ".join(differing) or "as simulated")[: LONGEST_NAME // 2]
+
+
+def facts_of(config: OperationConfig, seed: int) -> dict[str, str]:
+    """Facts about a simulated robot that its log needs so that one can learn from it.
+
+    :param config: settings of its operation
+    :param seed: its seed
+    """
+    kind, times = kind_of(config), (repr(config.settle_seconds), repr(config.measure_seconds))
+    return {"seed": str(seed), "kind": kind, "robot": _robot_of(kind, seed), **dict(zip(TIMES, times, strict=True))}
+
+
+def _robot_of(kind: str, seed: int) -> str:
+    return f"{kind}, seed {seed}"
 
 
 def _of_mcap(path: Path) -> list[LoggedRobot]:
@@ -138,7 +158,7 @@ def _of_mcap(path: Path) -> list[LoggedRobot]:
         raise ConfigurationError(f"{path} has no windows to learn from: sarah-operate --log writes them")
     try:
         dimensions = check_dimensions(json.loads(log.about["dimensions"]))
-        conditions = {key: float(log.about[key]) for key in ("settle_seconds", "measure_seconds")}
+        conditions = {key: float(log.about[key]) for key in TIMES}
         rate, controller = 1.0 / float(log.about["dt"]), json.loads(log.about["controller"])
         shared = from_mapping(
             Conditions(), {**conditions, "control_rate": round(rate, 9), "controller": controller}, "about."
@@ -160,7 +180,7 @@ def _of_table(path: Path) -> list[LoggedRobot]:
     except (OSError, csv.Error) as error:
         raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
     robots: list[LoggedRobot] = []
-    own = ("settle_seconds", "measure_seconds", "control_rate")
+    own = (*TIMES, "control_rate")
     for row in rows:
         given = {name: _number(path, row, name) for name in own if row.get(name)}
         if row is rows[0]:
