@@ -45,16 +45,33 @@ LOGS = [logged(kind, seed) for kind in (-1.0, 0.0, 1.0) for seed in range(2)]
 
 
 class KnownRobot(FormulaRobot):
-    """A robot of a kind, which may become another one at a minute."""
+    """A robot of a kind, which may become another one at a minute.
 
-    def __init__(self, kind: float, minutes: float = 3.0, then: float | None = None, change: float = 0.0) -> None:
-        super().__init__(lambda shares, minute: reward(shares, self.kind_at(minute)), minutes, noise=0.01)
+    :param kind: kind of the robot
+    :param minutes: duration of the operation, in min
+    :param then: kind that it is of later
+    :param change: minute from which on it is
+    :param best: reward of its best parameters, where they disappoint
+    """
+
+    def __init__(
+        self,
+        kind: float,
+        minutes: float = 3.0,
+        then: float | None = None,
+        change: float = 0.0,
+        best: float | None = None,
+    ) -> None:
+        def worth(shares: np.ndarray, minute: float) -> float:
+            is_best = np.allclose(shares, BOX.shares(top(kind)))
+            return best if best is not None and is_best else reward(shares, self.kind_at(minute))
+
+        super().__init__(worth, minutes, noise=0.01)
         self.kind_at = lambda minute: kind if then is None or minute < change else then
         self._felt = np.random.default_rng(1)
 
     def run(self, parameters: Parameters) -> Window:
         begin = self.seconds
-        window = super().run(parameters)
-        window = dataclasses.replace(window, felt=felt(self.kind_at(begin / 60.0), self._felt))
+        window = dataclasses.replace(super().run(parameters), felt=felt(self.kind_at(begin / 60.0), self._felt))
         self.seen[-1] = window
         return window

@@ -1,8 +1,8 @@
 """What are logs of other robots worth to a robot?
 
-Robots that no log has, fixed before anything was learned, run with frozen parameters, with the careful learner, and with
-what the results ``logged_robots`` and ``logged_sets`` teach. ``python -m experiments.robot.learned_from_logs`` writes the
-recognition that the package ships from these two results, sarah/recognition/recognition.json.
+Robots that no log has, fixed before anything was learned, run with frozen parameters, with the careful learner, and
+with what the results ``logged_robots`` and ``logged_sets`` teach. From these two results ``python -m
+experiments.robot.learned_from_logs`` writes the recognition that the package ships, sarah/recognition/recognition.json.
 """
 
 from __future__ import annotations
@@ -12,16 +12,11 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import get_args
-
-import numpy as np
-from pandas import DataFrame
 
 from experiments import record
 from experiments.experiment import TRAINING, Experiment, product
 from experiments.record import Row
 from experiments.robot.logged_robots import FIRST_HELD_OUT_SEED, HELD_OUT, UNKNOWN, Differing
-from experiments.tables import shown, table
 from sarah.files import replace_text
 from sarah.operation.settings import SHIPPED, Change
 from sarah.recognition.learning import best_of_all, learn

@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from sarah.control.parameters import Parameters
+from sarah.operation.settings import BOX
 from sarah.recognition.recognition import Recognition
 
 SPREAD = 2.0
@@ -17,6 +18,9 @@ sensors' errors are drawn anew."""
 
 NOISE = 0.07
 """Standard deviation of a window's reward, and of what robots of a kind differ by."""
+LENGTH, DEVIATION = 0.3, 0.3
+"""Length over which a robot's reward changes, as a share of each range, and its standard deviation between far
+parameters."""
 LEAST = -4.0
 """Least logarithm of the likelihood of a set's rewards: a robot is of no kind exactly."""
 LEAST_DEVIATION = 0.02
@@ -111,6 +115,8 @@ def believed(recognition: Recognition, place: np.ndarray, observed: Observed) ->
     :param place: place of the robot
     :param observed: rewards that were observed of sets
     """
+    if recognition.kind == "model":
+        return _modelled(recognition, place, observed)
     shares, rewards = shares_of(recognition, place, observed), np.array(recognition.rewards)
     means = rewards @ shares
     variances = (np.square(recognition.deviations) + np.square(rewards - means[:, None])) @ shares + LEAST_DEVIATION**2
@@ -132,3 +138,24 @@ def rows_of_kind(recognition: Recognition, place: np.ndarray, observed: Observed
     """
     index = int(np.argmax(shares_of(recognition, place, observed)))
     return [(row[1:-1], row[-1]) for row in recognition.rows if row[0] == index]
+
+
+def _modelled(recognition: Recognition, place: np.ndarray, observed: Observed) -> list[Belief]:
+    """What a Gaussian process of places and parameters expects of each known set."""
+    from sklearn.gaussian_process import GaussianProcessRegressor
+    from sklearn.gaussian_process.kernels import ConstantKernel, Matern, WhiteKernel
+
+    def inputs(where: np.ndarray, parameters: Parameters) -> np.ndarray:
+        return np.concatenate([where / recognition.far, np.array(BOX.shares(parameters)) / LENGTH])
+
+    places = np.array(recognition.places)
+    seen = [(inputs(places[int(row[0])], row[1:-1]), row[-1]) for row in recognition.rows]
+    seen += [(inputs(place, parameters), reward) for parameters, its in observed.items() for reward in its]
+    rewards = np.array([reward for _, reward in seen])
+    kernel = ConstantKernel(DEVIATION**2) * Matern(1.0, nu=2.5) + WhiteKernel(NOISE**2)
+    process = GaussianProcessRegressor(kernel, optimizer=None)
+    process.fit(np.array([one for one, _ in seen]), rewards - rewards.mean())
+    means, deviations = process.predict(np.array([inputs(place, one) for one in recognition.sets]), return_std=True)
+    deviations = np.sqrt(np.maximum(deviations**2 - NOISE**2, LEAST_DEVIATION**2))
+    found = zip(recognition.sets, means + rewards.mean(), deviations, strict=True)
+    return [Belief(parameters, float(mean), float(deviation)) for parameters, mean, deviation in found]

@@ -9,17 +9,15 @@ import numpy as np
 from sarah.control.parameters import Parameters
 from sarah.errors import ConfigurationError
 from sarah.operation.settings import BOX, SHIPPED
+from sarah.recognition.belief import DEVIATION, LENGTH, NOISE
 from sarah.recognition.felt import FEATURES, features_of
 from sarah.recognition.logs import LoggedRobot
-from sarah.recognition.recognition import Kind, Layer, Numbers, Recognition
+from sarah.recognition.recognition import MOST, Kind, Layer, Matrix, Numbers, Recognition
 
 REPEATED = 3
 """Number of windows from which on a set counts as repeated."""
 SAME = 1e-4
 """Largest difference of parameters that count as the same: tables may be rounded."""
-LENGTH, DEVIATION, NOISE = 0.3, 0.3, 0.07
-"""Length over which a robot's reward changes, as a share of each range, its standard deviation between far parameters,
-and that of a window's reward around the mean."""
 ROWS_AROUND_BEST, ROWS_AROUND_REFERENCE = 10, 4
 """Number of rows of each kind that are kept: those that are nearest to its best set, and to the reference. They show
 where rewards fall."""
@@ -68,7 +66,7 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
         rewards=_plain(rewards),
         deviations=_plain(deviations),
         layers=_LAYERS[kind]((features - centre) @ whitening.T, labels) if kind in _LAYERS else (),
-        rows=tuple(row for index, its in enumerate(kinds.values()) for row in _rows(index, its, reference)),
+        rows=_rows_of_model(kinds, sets) if kind == "model" else _rows(kinds, reference),
     )
 
 
@@ -113,18 +111,35 @@ def felt_with(robot: LoggedRobot, reference: Parameters) -> np.ndarray:
     return np.array([features_of(window.felt, robot.scale) for window in its]).reshape(-1, len(FEATURES))
 
 
-def _rows(index: int, robots: Sequence[LoggedRobot], reference: Parameters) -> list[Numbers]:
-    rewards = rewards_of(robots)
-    tried = list(rewards)
-    places = np.array([BOX.shares(one) for one in tried])
+def _rows(kinds: Mapping[str, Sequence[LoggedRobot]], reference: Parameters) -> Matrix:
+    """Rows of each kind around its best set and around the reference."""
+    rows: list[Numbers] = []
+    for index, robots in enumerate(kinds.values()):
+        rewards = rewards_of(robots)
+        tried = list(rewards)
+        places = np.array([BOX.shares(one) for one in tried])
+        best = max(map(best_set, robots), key=lambda one: float(np.mean(rewards[one])))
+        for centre, count in ((best, ROWS_AROUND_BEST), (reference, ROWS_AROUND_REFERENCE)):
+            order = np.argsort(np.linalg.norm(places - BOX.shares(centre), axis=1), kind="stable")
+            rows += [_row(index, tried[i], rewards[tried[i]]) for i in order[:count]]
+    return tuple(dict.fromkeys(rows))
 
-    def nearest(centre: Parameters, count: int) -> list[Parameters]:
-        order = np.argsort(np.linalg.norm(places - BOX.shares(centre), axis=1), kind="stable")
-        return [tried[i] for i in order[:count]]
 
-    best = max(map(best_set, robots), key=lambda one: float(np.mean(rewards[one])))
-    kept = dict.fromkeys([*nearest(best, ROWS_AROUND_BEST), *nearest(reference, ROWS_AROUND_REFERENCE)])
-    return [(float(index), *_plain(np.array(one)), float(_plain(np.mean(rewards[one])))) for one in kept]
+def _rows_of_model(kinds: Mapping[str, Sequence[LoggedRobot]], sets: Sequence[Parameters]) -> Matrix:
+    """Rows of each kind with the known sets, and as many others as there is room for, spread evenly."""
+    every = [
+        (one in sets, _row(index, one, rewards))
+        for index, robots in enumerate(kinds.values())
+        for one, rewards in rewards_of(robots).items()
+    ]
+    known = [row for is_known, row in every if is_known][:MOST]
+    others = [row for is_known, row in every if not is_known]
+    room = min(MOST - len(known), len(others))
+    return (*known, *(others[i * len(others) // room] for i in range(room)))
+
+
+def _row(index: int, parameters: Parameters, rewards: Sequence[float]) -> Numbers:
+    return (float(index), *_plain(np.array(parameters)), float(_plain(np.mean(rewards))))
 
 
 def _whitening(residuals: np.ndarray) -> np.ndarray:

@@ -20,7 +20,7 @@ from sarah.operation.settings import BOX, SHIPPED, OperationConfig
 from sarah.ranges import Within, check_ranges
 from sarah.recognition.felt import FEATURES
 
-Kind = Literal["nearest", "classes", "network", "best"]
+Kind = Literal["nearest", "classes", "network", "model", "best"]
 Numbers = tuple[float, ...]
 Matrix = tuple[tuple[float, ...], ...]
 
@@ -30,8 +30,8 @@ LARGEST_FILE = 2**20
 """Largest size of a file that is read, in bytes; the shipped one has some 20,000."""
 LARGEST_NUMBER = 1e6
 """Largest number in a recognition, by amount."""
-MOST = 500
-"""Largest number of kinds, of sets, and of a layer's units."""
+MOST = 1000
+"""Largest number of kinds, of sets, of rows, and of a layer's units."""
 LONGEST_NAME = 200
 """Largest number of characters in the name of a robot or a kind."""
 
@@ -108,7 +108,8 @@ class Recognition:
     :param deviations: standard deviation of each
     :param layers: layers of the network that tells kinds apart by their places; one is a linear discriminant. Between
         layers is a hyperbolic tangent. None where the distance tells
-    :param rows: best sets that robots of each kind have tried: index of the kind, parameters and mean reward
+    :param rows: sets that robots of each kind have tried: index of the kind, parameters and mean reward. With the kind
+        ``model`` they are what it knows, else those around the best set and the reference
     """
 
     kind: Kind = "nearest"
@@ -135,7 +136,13 @@ class Recognition:
             if not name or len(name) > LONGEST_NAME or not is_text(name):
                 raise ConfigurationError(f"kinds.{index} must be a name of one line, not {shortened(name)}")
         kinds, sets, coordinates = len(self.kinds), len(self.sets), len(self.whitening)
-        for name, count in (("kinds", kinds), ("sets", sets), ("whitening", coordinates), ("layers", len(self.layers))):
+        for name, count in (
+            ("kinds", kinds),
+            ("sets", sets),
+            ("whitening", coordinates),
+            ("layers", len(self.layers)),
+            ("rows", len(self.rows)),
+        ):
             if count > MOST:
                 raise ConfigurationError(f"{name} must be at most {MOST}, not {count}")
         _check("centre", (self.centre,), (1, len(FEATURES)))

@@ -104,7 +104,7 @@ def test_logs_that_cannot_be_compared_are_refused_by_name(
 
 
 def test_what_is_no_log_is_named(tmp_path: Path) -> None:
-    with pytest.raises(ConfigurationError, match="notes.txt is no log"):
+    with pytest.raises(ConfigurationError, match=r"notes\.txt is no log"):
         read_logs([tmp_path / "notes.txt"])
     with pytest.raises(ConfigurationError, match="at least one log"):
         read_logs([])

@@ -10,7 +10,7 @@ from sarah.recognition.learning import learn
 from sarah.recognition.recognition import Recognition, read_recognition, shipped_recognition
 
 
-@pytest.mark.parametrize("kind", ["nearest", "classes", "network", "best"])
+@pytest.mark.parametrize("kind", ["nearest", "classes", "network", "model", "best"])
 def test_what_was_learned_is_read_back(kind: str, tmp_path: Path) -> None:
     recognition = learn(LOGS, kind)  # type: ignore[arg-type]  # one of the kinds
     file = tmp_path / "recognition.json"
