@@ -191,9 +191,10 @@ def _network(places: np.ndarray, labels: np.ndarray) -> tuple[Layer, ...]:
     """Network with one hidden layer."""
     from sklearn.neural_network import MLPClassifier
 
-    found = MLPClassifier((UNITS,), "tanh", solver="lbfgs", alpha=0.1, max_iter=2000, random_state=0)
-    found.fit(places, labels)
-    weights, biases = [one.T for one in found.coefs_], list(found.intercepts_)
+    size = max(float(np.abs(places).max()), 1.0)
+    found = MLPClassifier((UNITS,), "tanh", solver="lbfgs", alpha=0.1, max_iter=5000, random_state=0)
+    found.fit(places / size, labels)
+    weights, biases = [found.coefs_[0].T / size, *(one.T for one in found.coefs_[1:])], list(found.intercepts_)
     if len(biases[-1]) == 1:  # of two kinds, it has one output
         weights[-1] = np.concatenate([-weights[-1], weights[-1]]) / 2.0
         biases[-1] = np.concatenate([-biases[-1], biases[-1]]) / 2.0

@@ -27,7 +27,7 @@ WELL_BELOW = 0.1
 """Reward by which a window falls well below the reference."""
 BANNING = 2
 """Number of such windows in a row that ban a set."""
-LENGTH_AT_TOP = 0.3
+LENGTH_AT_TOP = 0.2
 """Length over which the reward changes near a set that was found by learning, as a share of each range."""
 RECENT = 4
 """Number of the last windows of the careful learner whose mean is compared with what is believed of a set."""
