@@ -28,7 +28,8 @@ WELL_BELOW = 0.1
 BANNING = 2
 """Number of such windows in a row that ban a set."""
 LENGTH_AT_TOP = 0.2
-"""Length over which the reward changes near a set that was found by learning, as a share of each range."""
+"""Length over which the reward changes near a set that was found by learning, as a share of each range: shorter than
+elsewhere, so that trials change less."""
 RECENT = 4
 """Number of the last windows of the careful learner whose mean is compared with what is believed of a set."""
 LOSS = 0.1
@@ -70,23 +71,25 @@ def operate_recognised(robot: RobotInOperation, first: Parameters, seed: int, re
     check_recognition(recognition, robot.config, first)
     known = _Known(recognition, robot)
     known.recognise()
+    recognised = robot.windows
     while True:
         known.push()
-        search, rewards, since, lost = known.careful(seed), [], 0, 0
-        while not robot.is_over and not known.is_better_than(rewards[-RECENT:]):
+        search, rewards, lost = known.careful(seed), [], 0
+        while True:
+            if robot.is_over:
+                return search.choice()
             parameters = search.ask(robot.windows_left)
             window = robot.run(parameters)
             search.tell(parameters, window.observed_reward, window.fell)
-            rewards.append(window.observed_reward)
             known.observe(window)
+            rewards.append(window.observed_reward)
             lost = lost + 1 if search.lost > LOSS else 0
-            if lost >= LOST_WINDOWS and len(rewards) >= since + PATIENCE and not robot.is_over:
-                since = len(rewards)
+            if lost >= LOST_WINDOWS and robot.windows >= recognised + PATIENCE and not robot.is_over:
+                recognised = robot.windows
                 if known.recognise():
                     break
-        else:
-            if robot.is_over:
-                return search.choice()
+            elif not lost and known.is_better_than(rewards[-RECENT:]):
+                break
 
 
 class _Known:
