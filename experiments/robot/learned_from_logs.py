@@ -28,7 +28,7 @@ from sarah.training.operate import SessionResult, run_session
 
 LOGS = ("logged_robots", "logged_sets")
 CHANGING = "servos 10/s from minute 5"
-ROBOTS = {**{str(robot): robot for robot in (*HELD_OUT, *UNKNOWN)}, CHANGING: Differing()}
+ROBOTS = {**{str(robot): robot for robot in (*HELD_OUT[::2], *HELD_OUT[1::2], *UNKNOWN)}, CHANGING: Differing()}
 GROUPS = {
     **dict.fromkeys(map(str, HELD_OUT), "known"),
     **dict.fromkeys(map(str, UNKNOWN), "unknown"),
@@ -36,7 +36,7 @@ GROUPS = {
 }
 FROZEN, CAREFUL, BEST = "frozen", "careful", "one set for all, frozen"
 RECOGNISE = {f"recognise, {kind}": kind for kind in ("nearest", "classes", "network")}
-LEARNERS = (FROZEN, CAREFUL, "recognise, nearest", BEST, "recognise, classes", "recognise, network")
+LONG = ("recognise, nearest", CAREFUL, FROZEN)
 SHORT = (BEST, "recognise, classes", "recognise, network")
 """Learners of which only the first minutes are asked for."""
 SPANS = {"first_minute": (0.0, 1.1), "first_3_min": (0.0, 3.1), "minute_6": (5.05, 6.12), "from_8_min": (8.0, 11.0)}
@@ -51,18 +51,25 @@ class LearnedFromLogs(Experiment):
 
     depends_on = (*TRAINING, "sarah/operation", "sarah/recognition")
     seeds: int = 5  # number of seeds of each robot and learner
+    robots: int = len(ROBOTS)  # number of robots
     minutes: float = 10.0  # duration of the sessions, in min
     short_minutes: float = 3.0  # duration of those of which only the beginning is asked for, in min
-    engine: Engine = "mujoco"  # engine of the robots; those of the logs were MuJoCo's
 
     def cases(self) -> list[Row]:
-        """Every robot with every learner, one seed after the other."""
-        every = product(engine=[self.engine], seed=range(self.seeds), robot=ROBOTS, learner=LEARNERS)
-        return [case for case in every if case["robot"] != CHANGING or case["learner"] not in SHORT]
+        """Every robot with every learner, one seed after the other, and a seed in the other engine."""
+        robots = list(ROBOTS)[: self.robots]
+        every: list[Row] = []
+        for seed in range(self.seeds):
+            for learners in (LONG, SHORT):
+                every += product(engine=["mujoco"], seed=[seed], robot=robots, learner=learners)
+            if seed == 0:
+                every += product(engine=["pybullet"], seed=[seed], robot=robots, learner=LONG)
+        return [case for case in every if case["robot"] != CHANGING or not _is_short(**case)]
 
     def rows(self, engine: Engine, seed: int, robot: str, learner: str) -> Iterator[Row]:
         """Mean scores of a session."""
-        minutes = min(self.minutes, self.short_minutes) if learner in SHORT else self.minutes
+        is_short = _is_short(engine, seed, robot, learner)
+        minutes = min(self.minutes, self.short_minutes) if is_short else self.minutes
         config = ROBOTS[robot].config(minutes, engine)
         if robot == CHANGING:
             change = Change(minutes / 2.0, {"randomisation": {"actuator_bandwidth": 10.0}})
@@ -74,7 +81,12 @@ class LearnedFromLogs(Experiment):
         identity = recognition.identity if recognition else ""
         spec = SessionSpec(parameters, name, first + seed, config, identity)
         found = run_session(spec, recognition=recognition)
-        yield {"group": GROUPS[robot], **_scores(found, learner in SHORT), "falls": found.falls}
+        yield {"group": GROUPS[robot], **_scores(found, is_short), "falls": found.falls}
+
+
+def _is_short(engine: Engine, seed: int, robot: str, learner: str) -> bool:
+    """Whether only the first minutes of a case are asked for."""
+    return learner in SHORT or engine != "mujoco"
 
 
 def _scores(found: SessionResult, is_short: bool) -> Row:
@@ -91,7 +103,7 @@ def learned(kind: Kind) -> Recognition:
 
 
 FULL = LearnedFromLogs()
-QUICK = LearnedFromLogs(seeds=1, minutes=0.1, short_minutes=0.1)
+QUICK = LearnedFromLogs(seeds=1, robots=1, minutes=0.1, short_minutes=0.1)
 
 
 def ship(path: Path = SHIPPED_FILE) -> None:

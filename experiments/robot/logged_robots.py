@@ -12,9 +12,11 @@ from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
+from pandas import DataFrame
 
 from experiments.experiment import TRAINING, Experiment
 from experiments.record import Row
+from experiments.tables import table
 from sarah.control.parameters import Parameters
 from sarah.episode.from_mapping import from_mapping
 from sarah.operation.robot_in_operation import RobotInOperation
@@ -107,11 +109,12 @@ class LoggedRobots(Experiment):
     depends_on = (*TRAINING, "sarah/operation")
     minutes: float = 6.0  # duration of the sessions of the careful learner and of CMA-ES, in min
     sets: int = 10  # number of random sets, which are the same on all robots
+    robots: int = len(ROBOTS)  # number of robots
     windows: int = 5  # number of windows with the shipped set, and with each set that a learner leaves
 
     def cases(self) -> list[Row]:
         """Every robot."""
-        return [{"robot": name} for name in ROBOTS]
+        return [{"robot": name} for name in list(ROBOTS)[: self.robots]]
 
     def rows(self, robot: str) -> Iterator[Row]:
         """The windows of a robot's logs."""
@@ -148,4 +151,17 @@ def window_rows(log: str, windows: Sequence[Window]) -> Iterator[Row]:
 
 
 FULL = LoggedRobots()
-QUICK = LoggedRobots(minutes=0.1, sets=1, windows=1)
+QUICK = LoggedRobots(minutes=0.1, sets=1, robots=1, windows=1)
+
+
+def robots(rows: DataFrame) -> str:
+    """What was observed of each robot."""
+    means = rows.pivot_table(index="robot", columns="log", values="observed_reward", sort=False)
+    falls = rows.groupby("robot", sort=False).fell.sum()
+    shown_rows = means.assign(windows=rows.groupby("robot", sort=False).size(), falls=falls).reset_index()
+    columns = ["shipped", "left by careful", "left by cma-es"]
+    caption = (
+        f"Observed rewards on the robots of the logs, means of {FULL.windows} windows each: with the shipped "
+        "parameters, and with those that the careful learner and CMA-ES leave."
+    )
+    return table(shown_rows, ["robot", "windows", "falls", *columns], caption, **dict.fromkeys(columns, ".2f"))
