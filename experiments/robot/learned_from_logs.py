@@ -13,15 +13,20 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
+import numpy as np
+from pandas import DataFrame
+
 from experiments import record
 from experiments.experiment import TRAINING, Experiment, product
 from experiments.record import Row
 from experiments.robot.logged_robots import FIRST_HELD_OUT_SEED, HELD_OUT, UNKNOWN, Differing
+from experiments.tables import shown, table, turned_table
 from sarah.files import replace_text
 from sarah.operation.settings import SHIPPED, Change
 from sarah.recognition.learning import best_of_all, learn
 from sarah.recognition.logs import read_logs
 from sarah.recognition.recognition import SHIPPED_FILE, Kind, Recognition
+from sarah.reports.uncertainty import difference
 from sarah.runs.session import SessionSpec
 from sarah.simulation.engines import Engine
 from sarah.training.operate import SessionResult, run_session
@@ -39,6 +44,7 @@ RECOGNISE = {f"recognise, {kind}": kind for kind in ("nearest", "classes", "netw
 LONG = ("recognise, nearest", CAREFUL, FROZEN)
 SHORT = (BEST, "recognise, classes", "recognise, network")
 """Learners of which only the first minutes are asked for."""
+FORMATS = {"minute": ".2f", "_min": ".3f", "minute_6": ".2f", "falls": ".1f"}
 SPANS = {"first_minute": (0.0, 1.1), "first_3_min": (0.0, 3.1), "minute_6": (5.05, 6.12), "from_8_min": (8.0, 11.0)}
 """Spans of the time of operation, in min, by the end of the windows: the first one begins with a second of standing."""
 HARD, EASY = 0.85, 0.92
@@ -104,6 +110,99 @@ def learned(kind: Kind) -> Recognition:
 
 FULL = LearnedFromLogs()
 QUICK = LearnedFromLogs(seeds=1, robots=1, minutes=0.1, short_minutes=0.1)
+
+
+NEAREST = LONG[0]
+
+
+def graded(rows: DataFrame) -> DataFrame:
+    """Rows of robots in MuJoCo, with a column that says how good the frozen shipped parameters are on each."""
+    rows = rows[rows.engine == "mujoco"]
+    frozen = rows[rows.learner == FROZEN].groupby("robot").score.mean()
+    names = {
+        robot: "hard" if score < HARD else "easy" if score >= EASY else "between" for robot, score in frozen.items()
+    }
+    rows = rows[rows.robot.isin(names)]
+    grades = [names[row.robot] if row.group == "known" else row.group for row in rows.itertuples()]
+    return rows.assign(grade=grades)
+
+
+def _grade(score: float) -> str:
+    return "hard" if score < HARD else "easy" if score >= EASY else "between"
+
+
+def against(rows: DataFrame, learner: str, other: str, column: str) -> tuple[float, float, float, float, int]:
+    """Mean of a learner, its difference from another one with the 95 % interval, and the number of sessions."""
+    wide = rows.pivot(index=["robot", "seed"], columns="learner", values=column)
+    if learner not in wide or other not in wide:
+        return (np.nan,) * 4 + (0,)
+    both = wide[[learner, other]].dropna().to_numpy()
+    if not len(both):
+        return (np.nan,) * 4 + (0,)
+    return (float(both[:, 0].mean()), *difference(both[:, :1], both[:, 1:]), len(both))
+
+
+def answer(rows: DataFrame) -> str:
+    """What logs are worth on hard robots and on easy ones."""
+    rows = graded(rows)
+    hard, easy = (rows[rows.grade == grade] for grade in ("hard", "easy"))
+    means = {learner: hard[hard.learner == learner].first_3_min.mean() for learner in (FROZEN, CAREFUL, NEAREST, BEST)}
+    minute, gain, low, high, count = against(hard, NEAREST, CAREFUL, "first_minute")
+    late = against(rows[rows.group == "known"], NEAREST, CAREFUL, "from_8_min")
+    _, lost, lost_low, lost_high, _ = against(easy, NEAREST, FROZEN, "score")
+    return (
+        f"On {hard.robot.nunique()} robots where the shipped parameters score below {HARD}, a robot that is recognised "
+        f"scores {shown(minute, '.2f')} in its first minute. That is {shown(gain, '.2f')} ({shown(low, '.2f')} to "
+        f"{shown(high, '.2f')}) more than with the careful learner from scratch, in {count} sessions. In the first "
+        f"three minutes it scores {shown(means[NEAREST], '.2f')}, the careful learner {shown(means[CAREFUL], '.2f')}, "
+        f"frozen parameters {shown(means[FROZEN], '.2f')}, and one set for all robots of the same logs, frozen, "
+        f"{shown(means[BEST], '.2f')}.\n\nWhere the shipped parameters score {EASY} or more, the difference from "
+        f"frozen ones over ten minutes is {shown(lost, '+.3f')} ({shown(lost_low, '+.3f')} to "
+        f"{shown(lost_high, '+.3f')}). In minutes 8 to 10 the difference from the careful learner over all robots is "
+        f"{shown(late[1], '+.3f')} ({shown(late[2], '+.3f')} to {shown(late[3], '+.3f')})."
+    )
+
+
+def learners(rows: DataFrame) -> str:
+    """Mean scores of every learner by the grade of the robots."""
+    rows = graded(rows)
+    columns = ["first_minute", "first_3_min", "from_8_min", "score", "falls"]
+    means = rows.groupby(["grade", "learner"], sort=False)[columns].mean()
+    means = means.assign(sessions=rows.groupby(["grade", "learner"], sort=False).size()).reset_index()
+    order = {grade: number for number, grade in enumerate(("hard", "between", "easy", "unknown"))}
+    means = means[means.grade.isin(order)].sort_values("grade", key=lambda grades: grades.map(order), kind="stable")
+    caption = (
+        f"Mean scores of robots that no log has, in MuJoCo. On hard robots frozen shipped parameters score below "
+        f"{HARD}, on easy ones {EASY} or more; unknown are kinds of robots that no log has anything like."
+    )
+    return table(means, ["grade", "learner", "sessions", *columns], caption, **FORMATS)
+
+
+def robots(rows: DataFrame) -> str:
+    """The first three minutes of every robot."""
+    rows = graded(rows)
+    rows = rows[rows.group != "changing"]
+    means = rows.groupby(["robot", "learner"], sort=False).first_3_min.mean().reset_index()
+    caption = "Mean score of the first three minutes on each robot, in MuJoCo."
+    return turned_table(means, ["robot"], "learner", "first_3_min", caption, ".2f")
+
+
+def change(rows: DataFrame) -> str:
+    """The minute after the servos weaken."""
+    rows = rows[rows.robot == CHANGING]
+    means = rows.groupby("learner", sort=False)[["minute_6", "from_8_min", "falls"]].mean().reset_index()
+    caption = "Servos that weaken to 10 per second at minute 5: mean score in the next minute, and in the last ones."
+    return table(means, ["learner", "minute_6", "from_8_min", "falls"], caption, **FORMATS)
+
+
+def engines(rows: DataFrame) -> str:
+    """The same robots in the engine that no log is from."""
+    rows = rows[rows.engine == "pybullet"]
+    if rows.empty:
+        return "PyBullet's robots have not run yet."
+    means = rows.groupby("learner", sort=False)[["first_minute", "first_3_min", "falls"]].mean().reset_index()
+    caption = f"Means over {rows.robot.nunique()} robots in PyBullet, a session of each; all logs are of MuJoCo's."
+    return table(means, list(means), caption, **FORMATS)
 
 
 def ship(path: Path = SHIPPED_FILE) -> None:
