@@ -33,7 +33,7 @@ class OfflineOptions:
         session's windows.csv and, if they have them, robot and kind
     :param kind: ``nearest``: what is known of the kinds that are felt alike; ``classes``: a linear discriminant with a
         shrunk covariance tells kinds apart; ``network``: a small network does; ``model``: a Gaussian process of what is
-        felt and of the parameters; ``best``: one set for all
+        felt and of the parameters; ``naf``: NAF chooses sets, with the logs as replay; ``best``: one set for all
     :param out: folder to write, new or empty; by default a new one, runs/recognition/<kind>
     """
 

@@ -51,7 +51,7 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
     whitening = _whitening(features - means[labels])
     places = (means - centre) @ whitening.T
     between = np.linalg.norm(places[:, None] - places[None], axis=2) + np.diag(np.full(len(kinds), np.inf))
-    sets = list(dict.fromkeys([reference, *(best_set(robot) for its in kinds.values() for robot in its)]))
+    sets = list(dict.fromkeys([reference, *_candidates(kind, kinds, places)]))
     rewards, deviations = _worth(sets, kinds)
     return Recognition(
         kind=kind,
@@ -68,6 +68,17 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
         layers=_LAYERS[kind]((features - centre) @ whitening.T, labels) if kind in _LAYERS else (),
         rows=_rows_of_model(kinds, sets) if kind == "model" else _rows(kinds, reference),
     )
+
+
+def _candidates(kind: Kind, kinds: Mapping[str, Sequence[LoggedRobot]], places: np.ndarray) -> list[Parameters]:
+    """Sets that may be pushed."""
+    if kind == "naf":
+        from sarah.recognition.naf import chosen_sets  # slow to import because of torch
+
+        every = [(index, robot) for index, robots in enumerate(kinds.values()) for robot in robots]
+        windows = [(index, one.parameters, one.reward) for index, robot in every for one in robot.windows]
+        return chosen_sets(places, windows)
+    return [best_set(robot) for robots in kinds.values() for robot in robots]
 
 
 def rewards_of(robots: Sequence[LoggedRobot]) -> dict[Parameters, list[float]]:

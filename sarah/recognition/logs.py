@@ -10,6 +10,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError, SarahError, shortened
 from sarah.files import is_text, read_lines
@@ -29,6 +30,8 @@ MCAP, TABLE = ".mcap", ".csv"
 """Endings of the names of logs that are files."""
 TIMES = ("settle_seconds", "measure_seconds")
 """Names of the times of a window."""
+SLACK = 0.1
+"""Time by which a window may be longer or shorter than it should be, in s."""
 LARGEST_VALUE = 1e6
 """Largest number in a table, by amount."""
 LOWEST_REWARD, HIGHEST_REWARD = -0.01, 1.5
@@ -158,18 +161,28 @@ def _of_mcap(path: Path) -> list[LoggedRobot]:
         raise ConfigurationError(f"{path} has no windows to learn from: sarah-operate --log writes them")
     try:
         dimensions = check_dimensions(json.loads(log.about["dimensions"]))
-        conditions = {key: float(log.about[key]) for key in TIMES}
+        times = {key: float(log.about[key]) for key in TIMES if key in log.about}
         rate, controller = 1.0 / float(log.about["dt"]), json.loads(log.about["controller"])
         shared = from_mapping(
-            Conditions(), {**conditions, "control_rate": round(rate, 9), "controller": controller}, "about."
+            Conditions(), {**times, "control_rate": round(rate, 9), "controller": controller}, "about."
         )
     except KeyError as error:
         raise ConfigurationError(f"{path} does not say its {error.args[0]}: write it anew with this version") from error
     except (SarahError, ValueError, TypeError, ZeroDivisionError, RecursionError) as error:
         raise ConfigurationError(f"{path} does not say which windows it has: {error!s:.300}") from error
+    _check_durations(path, values, shared)
     rows = [{**one, **{name: one.get(f"felt_{name}") for name in FELT}} for one in values]
     name = log.about.get("robot", path.stem)
     return _robots(path, rows, name, log.about.get("kind", name), shared, scale_of(dimensions))
+
+
+def _check_durations(path: Path, windows: Iterable[Mapping[str, Any]], conditions: Conditions) -> None:
+    """Refuse windows that took another time than their conditions say: with standing, or without it."""
+    seconds = conditions.settle_seconds + conditions.measure_seconds
+    for window in windows:
+        duration = window.get("duration", seconds)
+        if not window["fell"] and not seconds - SLACK <= duration <= seconds + STAND_SECONDS + SLACK:
+            raise ConfigurationError(f"{path} has a window of {duration:g} s, not of {seconds:g} s")
 
 
 def _of_table(path: Path) -> list[LoggedRobot]:

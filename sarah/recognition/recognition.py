@@ -20,7 +20,7 @@ from sarah.operation.settings import BOX, SHIPPED, OperationConfig
 from sarah.ranges import Within, check_ranges
 from sarah.recognition.felt import FEATURES
 
-Kind = Literal["nearest", "classes", "network", "model", "best"]
+Kind = Literal["nearest", "classes", "network", "model", "naf", "best"]
 Numbers = tuple[float, ...]
 Matrix = tuple[tuple[float, ...], ...]
 

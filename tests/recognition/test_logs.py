@@ -7,10 +7,13 @@ from typing import Any
 
 import pytest
 
+from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError
+from sarah.logs.robot_log import RobotLog
+from sarah.logs.simulated import about_robot
 from sarah.operation.settings import BOX, SHIPPED, Change, OperationConfig
 from sarah.operation.window import FELT, Window
-from sarah.recognition.logs import read_logs
+from sarah.recognition.logs import facts_of, read_logs
 from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
 
@@ -93,8 +96,6 @@ def test_a_hostile_table_is_named_with_what_is_wrong(changes: dict[str, Any], re
 def test_logs_that_cannot_be_compared_are_refused_by_name(
     settings: dict[str, Any], reason: str, tmp_path: Path
 ) -> None:
-    from sarah.episode.from_mapping import from_mapping
-
     config = from_mapping(OperationConfig(), settings)
     others = {item.name: getattr(config, item.name) for item in dataclasses.fields(config)}
     paths = [session(tmp_path / "first"), session(tmp_path / "other", **{**others, "changes": ()})]
@@ -108,3 +109,29 @@ def test_what_is_no_log_is_named(tmp_path: Path) -> None:
         read_logs([tmp_path / "notes.txt"])
     with pytest.raises(ConfigurationError, match="at least one log"):
         read_logs([])
+
+
+def mcap(path: Path, duration: float = 6.0, **facts: str) -> Path:
+    config = OperationConfig()
+    with RobotLog(path, about_robot(config.robot, "a program", **facts)) as log:
+        plain = window(0).plain()
+        log.window(6.0, {**plain, "seconds": duration})
+    return path
+
+
+def test_the_windows_of_an_mcap_file_are_a_log(tmp_path: Path) -> None:
+    (robot,) = read_logs([mcap(tmp_path / "robot.mcap", **facts_of(OperationConfig(), 3))])
+    (same,) = read_logs([session(tmp_path / "session", 3, changes=())])
+    assert robot.windows[0] == same.windows[0]
+    assert (robot.name, robot.kind, robot.conditions) == (same.name, same.kind, same.conditions)
+
+
+def test_an_mcap_file_with_other_windows_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r"long\.mcap has a window of 9 s, not of 6 s"):
+        read_logs([mcap(tmp_path / "long.mcap", 9.0)])
+    with pytest.raises(ConfigurationError, match=r"settle_seconds must be between"):
+        read_logs([mcap(tmp_path / "hostile.mcap", settle_seconds="1e9")])
+    with RobotLog(tmp_path / "empty.mcap", {}):
+        pass
+    with pytest.raises(ConfigurationError, match=r"empty\.mcap has no windows"):
+        read_logs([tmp_path / "empty.mcap"])

@@ -10,8 +10,9 @@ from sarah.recognition.learning import learn
 from sarah.recognition.recognition import Recognition, read_recognition, shipped_recognition
 
 
-@pytest.mark.parametrize("kind", ["nearest", "classes", "network", "model", "best"])
-def test_what_was_learned_is_read_back(kind: str, tmp_path: Path) -> None:
+@pytest.mark.parametrize("kind", ["nearest", "classes", "network", "model", "naf", "best"])
+def test_what_was_learned_is_read_back(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("sarah.recognition.naf.STEPS", 5)
     recognition = learn(LOGS, kind)  # type: ignore[arg-type]  # one of the kinds
     file = tmp_path / "recognition.json"
     file.write_text(recognition.text())
