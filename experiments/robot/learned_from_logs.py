@@ -66,7 +66,7 @@ class LearnedFromLogs(Experiment):
         robots = list(ROBOTS)[: self.robots]
         every: list[Row] = []
         for seed in range(self.seeds):
-            for learners in (LONG, SHORT):
+            for learners in ((*LONG, BEST), SHORT[1:]):
                 every += product(engine=["mujoco"], seed=[seed], robot=robots, learner=learners)
             if seed == 0:
                 every += product(engine=["pybullet"], seed=[seed], robot=robots, learner=LONG)

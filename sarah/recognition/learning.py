@@ -23,6 +23,8 @@ ROWS_AROUND_BEST, ROWS_AROUND_REFERENCE = 10, 4
 where rewards fall."""
 FAR = 1.5
 """Distance beyond which a robot is unknown, over the largest one from a kind to its nearest neighbour."""
+MOST_WINDOWS = 1000
+"""Number of windows of each kind that its process knows: the last ones. Its time goes with their third power."""
 UNITS = 16
 """Number of units in the hidden layer of a network."""
 
@@ -33,8 +35,11 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
     :param robots: robots of the logs; kinds that were never seen with the reference are left out
     :param kind: way of learning
     :param reference: parameters with which robots are recognised
-    :raises ConfigurationError: if there are fewer than two kinds, or each was seen only once
+    :raises ConfigurationError: if there are fewer than two kinds, if each was seen only once, or if there are too many
+        robots
     """
+    if len(robots) > MOST:
+        raise ConfigurationError(f"the logs have {len(robots)} robots, and at most {MOST} can be learned from")
     by_kind: dict[str, list[LoggedRobot]] = {}
     for robot in robots:
         by_kind.setdefault(robot.kind, []).append(robot)
@@ -181,10 +186,6 @@ def _worth(sets: Sequence[Parameters], kinds: Mapping[str, Sequence[LoggedRobot]
         rewards.append(expected + seen.mean())
         deviations.append(np.sqrt(np.maximum(deviation**2 - NOISE**2, 0.0)))
     return np.array(rewards).T, np.array(deviations).T
-
-
-MOST_WINDOWS = 1000
-"""Number of windows of each kind that its process knows: the last ones. Its time goes with their third power."""
 
 
 def _linear(places: np.ndarray, labels: np.ndarray) -> tuple[Layer, ...]:

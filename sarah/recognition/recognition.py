@@ -135,6 +135,8 @@ class Recognition:
         for index, name in enumerate(self.kinds):
             if not name or len(name) > LONGEST_NAME or not is_text(name):
                 raise ConfigurationError(f"kinds.{index} must be a name of one line, not {shortened(name)}")
+        if self.kinds and self.sets[:1] != (self.reference,):
+            raise ConfigurationError("sets.0 must be the reference")
         kinds, sets, coordinates = len(self.kinds), len(self.sets), len(self.whitening)
         for name, count in (
             ("kinds", kinds),

@@ -104,7 +104,7 @@ class _Known:
         self._reference = recognition.reference
         self._observed: dict[Parameters, list[float]] = {}
         self._banned: set[Parameters] = set()
-        self._place: np.ndarray | None = None
+        self._place = np.full(len(recognition.whitening), np.inf)
 
     def recognise(self) -> bool:
         """Run the reference. If the robot is another one than before, nothing is known of it any longer.
@@ -113,7 +113,7 @@ class _Known:
         """
         window, before = self._robot.run(self._reference), self._place
         place = place_of(self._recognition, features_of(window.felt, self._robot.config.robot.scale))
-        if before is not None and np.linalg.norm(place - before) <= CHANGED * self._recognition.far:
+        if np.linalg.norm(place - before) <= CHANGED * self._recognition.far:
             return False
         self._place, self._observed, self._banned = place, {self._reference: [window.observed_reward]}, set()
         return True
