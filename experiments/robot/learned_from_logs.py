@@ -20,7 +20,7 @@ from experiments import record
 from experiments.experiment import TRAINING, Experiment, product
 from experiments.record import Row
 from experiments.robot.logged_robots import FIRST_HELD_OUT_SEED, HELD_OUT, UNKNOWN, Differing
-from experiments.tables import shown, table, turned_table
+from experiments.tables import NOTHING, shown, table, turned_table
 from sarah.files import replace_text
 from sarah.operation.settings import SHIPPED, Change
 from sarah.recognition.learning import best_of_all, learn
@@ -143,24 +143,32 @@ def against(rows: DataFrame, learner: str, other: str, column: str) -> tuple[flo
 
 
 def answer(rows: DataFrame) -> str:
-    """What logs are worth on hard robots and on easy ones."""
+    """What logs are worth on hard robots and on easy ones, as far as rows tell."""
     rows = graded(rows)
     hard, easy = (rows[rows.grade == grade] for grade in ("hard", "easy"))
-    means = {learner: hard[hard.learner == learner].first_3_min.mean() for learner in (FROZEN, CAREFUL, NEAREST, BEST)}
-    minute, gain, low, high, count = against(hard, NEAREST, CAREFUL, "first_minute")
-    late = against(rows[rows.group == "known"], NEAREST, CAREFUL, "from_8_min")
-    _, lost, lost_low, lost_high, _ = against(easy, NEAREST, FROZEN, "score")
-    return (
+    minute, *gain, count = against(hard, NEAREST, CAREFUL, "first_minute")
+    sentences = [
         f"On {hard.robot.nunique()} robots where the shipped parameters score below {HARD}, a robot that is recognised "
-        f"scores {shown(minute, '.2f')} in its first minute. That is {shown(gain, '.2f')} ({shown(low, '.2f')} to "
-        f"{shown(high, '.2f')}) more than with the careful learner from scratch, in {count} sessions. In the first "
-        f"three minutes it scores {shown(means[NEAREST], '.2f')}, the careful learner {shown(means[CAREFUL], '.2f')}, "
-        f"frozen parameters {shown(means[FROZEN], '.2f')}, and one set for all robots of the same logs, frozen, "
-        f"{shown(means[BEST], '.2f')}.\n\nWhere the shipped parameters score {EASY} or more, the difference from "
-        f"frozen ones over ten minutes is {shown(lost, '+.3f')} ({shown(lost_low, '+.3f')} to "
-        f"{shown(lost_high, '+.3f')}). In minutes 8 to 10 the difference from the careful learner over all robots is "
-        f"{shown(late[1], '+.3f')} ({shown(late[2], '+.3f')} to {shown(late[3], '+.3f')})."
-    )
+        f"scores {shown(minute, '.2f')} in its first minute, in {count} sessions. The difference from the careful "
+        f"learner from scratch is {_with_interval(gain)}.",
+    ]
+    means = hard.groupby("learner").first_3_min.mean()
+    scores = [f"{shown(means[name], '.2f')} ({name})" for name in (NEAREST, CAREFUL, FROZEN, BEST) if name in means]
+    sentences.append(f"In the first three minutes the scores are {', '.join(scores)}.")
+    _, *late, count = against(rows[rows.group == "known"], NEAREST, CAREFUL, "from_8_min")
+    sentences.append(f"In minutes 8 to 10 it differs from the careful learner by {_with_interval(late)}.")
+    if len(easy):
+        _, *lost, count = against(easy, NEAREST, FROZEN, "score")
+        sentences.append(
+            f"Where the shipped parameters score {EASY} or more, it differs from frozen ones over ten minutes by "
+            f"{_with_interval(lost)}, in {count} sessions."
+        )
+    return " ".join(sentences)
+
+
+def _with_interval(found: list[float]) -> str:
+    mean, *ends = (shown(value, "+.3f") for value in found)
+    return mean if NOTHING in ends else f"{mean} ({' to '.join(ends)})"
 
 
 def learners(rows: DataFrame) -> str:
@@ -190,6 +198,8 @@ def robots(rows: DataFrame) -> str:
 def change(rows: DataFrame) -> str:
     """The minute after the servos weaken."""
     rows = rows[rows.robot == CHANGING]
+    if rows.empty:
+        return "That robot has not run yet."
     means = rows.groupby("learner", sort=False)[["minute_6", "from_8_min", "falls"]].mean().reset_index()
     caption = "Servos that weaken to 10 per second at minute 5: mean score in the next minute, and in the last ones."
     return table(means, ["learner", "minute_6", "from_8_min", "falls"], caption, **FORMATS)
