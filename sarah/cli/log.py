@@ -22,7 +22,7 @@ NOT_WHOLE = 1
 
 @dataclass(frozen=True)
 class LogOptions:
-    """Summarise logs of robots, check that they are whole, cut them, or make tables of them.
+    """Summarise logs of robots, check that they are whole, cut them, make tables of them, or say what they cover.
 
     A log is an MCAP file that sarah-eval or sarah-operate has written with --log, or your own loop with RobotLog. One
     that was cut, by a full disk or because its process was killed, is read up to its last whole chunk.
@@ -33,6 +33,8 @@ class LogOptions:
     :param cut: times at which a part begins and ends, in s since the run began; it is written as a log to --out
     :param out: file for the part of --cut
     :param csv: folder for a table of each topic, such as ticks.csv, with a column for each field
+    :param coverage: whether to say which parameters were seen on which robots, in the windows of sessions' folders, of
+        MCAP files and of CSV files with the columns of a session's windows.csv
     """
 
     files: Annotated[
@@ -42,13 +44,14 @@ class LogOptions:
     cut: Annotated[tuple[float, float] | None, tyro.conf.arg(metavar="BEGIN END")] = None
     out: Annotated[Path | None, tyro.conf.arg(metavar="FILE")] = None
     csv: Annotated[Path | None, tyro.conf.arg(metavar="DIR")] = None
+    coverage: bool = False
 
     def __post_init__(self) -> None:
         """Refuse options that exclude each other, or need another one."""
-        given = [name for name in ("check", "cut", "csv") if getattr(self, name)]
+        given = [name for name in ("check", "cut", "csv", "coverage") if getattr(self, name)]
         if len(given) > 1:
             raise ConfigurationError(f"give --{given[0]} or --{given[1]}, not both")
-        if given and given != ["check"] and len(self.files) > 1:
+        if given and given[0] in ("cut", "csv") and len(self.files) > 1:
             raise ConfigurationError(f"--{given[0]} takes one log, not {len(self.files)}")
         if (self.cut is None) != (self.out is None):
             raise ConfigurationError("--cut and --out belong together: --cut BEGIN END --out FILE")
@@ -74,6 +77,11 @@ def main() -> None:
             print(path)
     elif options.check:
         _check(options.files)
+    elif options.coverage:
+        from sarah.cli.coverage import coverage_lines
+
+        for line in coverage_lines(options.files):
+            print(printable(line))
     else:
         _summarise(options.files)
     check_output()

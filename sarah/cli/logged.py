@@ -8,6 +8,7 @@ from pathlib import Path
 from sarah.logs.robot_log import RobotLog
 from sarah.logs.simulated import SimulationLog, about_robot, check_written
 from sarah.operation.window import Window
+from sarah.recognition.logs import facts_of
 from sarah.runs.session import SessionSpec
 from sarah.training.operate import SessionResult
 
@@ -27,7 +28,7 @@ def logged(
     """
 
     def run_logged(watch: Watch, interrupted: Interrupted) -> SessionResult:
-        about = about_robot(spec.config.robot, program, learner=spec.learner, seed=str(spec.seed))
+        about = about_robot(spec.config.robot, program, learner=spec.learner, **facts_of(spec.config, spec.seed))
         with RobotLog(path, about, waits=True) as log:
             observer = SimulationLog(log, spec.learner)
 

@@ -38,6 +38,7 @@ from sarah.runs.session import FORMER_LEARNERS, SessionSpec
 from sarah.simulation.engines import check_engine
 
 if TYPE_CHECKING:
+    from sarah.recognition.recognition import Recognition
     from sarah.runs.session_folder import SessionFolder
     from sarah.training.operate import SessionResult
 
@@ -54,7 +55,9 @@ class OperateOptions(EpisodeOptions):
 
     :param subject: run folder of a training or a session, numbers separated by commas (P1 to P5, V1 to V4, or all
         nine), or the name of shipped parameters: what the robot begins with
-    :param learner: ``none``, ``careful``, ``naf``, ``cma-es`` or ``random``
+    :param learner: ``none``, ``careful``, ``recognise``, ``naf``, ``cma-es`` or ``random``
+    :param from_run: folder of sarah-train --offline, for learner ``recognise``: what logs teach; by default what the
+        package ships
     :param minutes: duration of the operation, in min
     :param seed: seed of robot, world, noise, pushes and learner
     :param settle_seconds: time that a window gives new parameters to settle, in s
@@ -82,6 +85,7 @@ class OperateOptions(EpisodeOptions):
 
     subject: Annotated[str, tyro.conf.Positional, tyro.conf.arg(metavar="[RUN|NUMBERS|NAME]")] = "balance"
     learner: str = "careful"
+    from_run: Annotated[Path | None, tyro.conf.arg(name="from", metavar="RUN")] = None
     minutes: float = 10.0
     seed: int = 0
     settle_seconds: float = 2.0
@@ -143,14 +147,15 @@ def _begun(options: OperateOptions) -> SessionFolder:
 
     if present := FORMER_LEARNERS.get(options.learner):
         say_present(COMMAND, f"--learner {options.learner}", "--learner", present)
+    recognition = _recognition_of(options)
     if options.robot is not None:
-        return _begun_with(options, options.robot)
-    spec = _spec_of(options)
+        return _begun_with(options, options.robot, recognition)
+    spec = _spec_of(options, recognition)
     _check_learns(options, spec)
     for count in range(len(spec.config.changes) + 1):
         check_engine(spec.config.robot_after(count).engine)
     path = options.out or new_path("operation", f"{spec.learner}-s{spec.seed}")
-    folder = SessionFolder.create(path, spec, options.compare_frozen)
+    folder = SessionFolder.create(path, spec, options.compare_frozen, recognition=_text_of(recognition, spec))
     say_engine(spec.config.robot)
     if Path(options.subject).is_dir() or is_shipped(options.subject):  # numbers have no settings
         of_subject = episode_of(options.subject, None, named_task(options.task)).spec
@@ -158,7 +163,7 @@ def _begun(options: OperateOptions) -> SessionFolder:
     return folder
 
 
-def _begun_with(options: OperateOptions, address: str) -> SessionFolder:
+def _begun_with(options: OperateOptions, address: str, recognition: Recognition | None) -> SessionFolder:
     """The folder of a new session whose robot runs by itself."""
     from sarah.recorded.folder import new_path
     from sarah.runs.session_folder import SessionFolder
@@ -170,9 +175,9 @@ def _begun_with(options: OperateOptions, address: str) -> SessionFolder:
     files = (options.authority, options.certificate, options.key)
     robot, found = robot_found(address, files, options.gone_seconds)
     times = {name: getattr(options, name) for name in ("minutes", "settle_seconds", "measure_seconds", "extended_from")}
-    spec = SessionSpec(_nine(subject), options.learner, options.seed, config_for(found, learned_with, **times))
+    spec = _spec_for(options, _nine(subject), config_for(found, learned_with, **times), recognition)
     path = options.out or new_path("operation", f"{spec.learner}-s{spec.seed}")
-    folder = SessionFolder.create(path, spec, robot=robot)
+    folder = SessionFolder.create(path, spec, robot=robot, recognition=_text_of(recognition, spec))
     print(f"the robot at {address} is {robot.robot}, on {robot.host}")
     return folder
 
@@ -234,7 +239,19 @@ def _check_alone(arguments: Sequence[str]) -> dict[str, str]:
     return given
 
 
-def _spec_of(options: OperateOptions) -> SessionSpec:
+def _recognition_of(options: OperateOptions) -> Recognition | None:
+    """What logs teach, for the learner that recognises its robot."""
+    if options.learner != "recognise":
+        if options.from_run is not None:
+            raise ConfigurationError(f"--from is for --learner recognise, not {options.learner}")
+        return None
+    from sarah.recognition.folder import RecognitionFolder
+    from sarah.recognition.recognition import shipped_recognition
+
+    return shipped_recognition() if options.from_run is None else RecognitionFolder.open(options.from_run).recognition()
+
+
+def _spec_of(options: OperateOptions, recognition: Recognition | None) -> SessionSpec:
     subject = episode_of(options.subject, None, named_task(options.task)).spec
     any_pushed = EpisodeSpec(STEPPING.baseline, 0, STEPPING, options.episode)
     robot = options.applied_to(any_pushed).config
@@ -248,7 +265,25 @@ def _spec_of(options: OperateOptions) -> SessionSpec:
         changes=tuple(map(change_of, options.change)),
         extended_from=options.extended_from,
     )
-    return SessionSpec(_nine(subject), options.learner, options.seed, config)
+    return _spec_for(options, _nine(subject), config, recognition)
+
+
+def _spec_for(
+    options: OperateOptions, parameters: Parameters, config: OperationConfig, recognition: Recognition | None
+) -> SessionSpec:
+    """Specification of a session; one that recognises its robot names the recognition, unless the package ships it."""
+    identity = "" if recognition is None or options.from_run is None else recognition.identity
+    spec = SessionSpec(parameters, options.learner, options.seed, config, identity)
+    if recognition is not None:
+        from sarah.training.recognise import check_recognition
+
+        check_recognition(recognition, config, spec.parameters)
+    return spec
+
+
+def _text_of(recognition: Recognition | None, spec: SessionSpec) -> str:
+    """Text of the recognition that a specification names; empty if it names none."""
+    return recognition.text() if recognition is not None and spec.recognition else ""
 
 
 def _nine(spec: Any) -> Parameters:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 OF_THE_SESSION = (
     *("--robot", "--learner", "--minutes", "--seed", "--settle-seconds", "--measure-seconds", "--extended-from"),
-    *("--gone-seconds", "--authority", "--certificate", "--key", "--out", "--task", "--resume"),
+    *("--gone-seconds", "--authority", "--certificate", "--key", "--out", "--task", "--resume", "--from"),
 )
 """Options that have an effect with a robot that runs by itself."""
 OF_THE_ROBOT = ("--gone-seconds", "--authority", "--certificate", "--key")

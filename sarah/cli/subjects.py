@@ -11,7 +11,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
 from sarah.errors import ConfigurationError, shortened, unknown_name
 from sarah.number import number
-from sarah.runs.kinds import SESSION
+from sarah.runs.kinds import RECOGNITION, SESSION
 
 LOG_SUFFIX = ".mcap"
 """Ending of the name of a log."""
@@ -52,7 +52,9 @@ def is_there(subject: str) -> bool:
 
     :param subject: what an argument names
     """
-    is_run = Path(subject).joinpath("config.yaml").is_file() or SESSION.owns(Path(subject))
+    is_run = Path(subject).joinpath("config.yaml").is_file() or any(
+        kind.owns(Path(subject)) for kind in (SESSION, RECOGNITION)
+    )
     return (
         subject in PARAMETER_SETS
         or is_run
@@ -76,6 +78,11 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
         from sarah.runs.session_episodes import episodes_of_session
 
         episodes = episodes_of_session(Path(subject))
+        return episodes, choose_episode(episodes, which)
+    if RECOGNITION.owns(Path(subject)):
+        from sarah.recognition.folder import RecognitionFolder
+
+        episodes = [RecognitionFolder.open(Path(subject)).best()]
         return episodes, choose_episode(episodes, which)
     if Path(subject).is_dir():
         from sarah.runs.run_folder import RunFolder
@@ -120,7 +127,8 @@ def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEp
     :param task: task, as there
     :raises ConfigurationError: if there is no such subject or episode
     """
-    if Path(subject).is_dir() and not SESSION.owns(Path(subject)) and which in (None, "learned"):
+    is_other = SESSION.owns(Path(subject)) or RECOGNITION.owns(Path(subject))
+    if Path(subject).is_dir() and not is_other and which in (None, "learned"):
         from sarah.runs.run_episodes import learned_episode
         from sarah.runs.run_folder import RunFolder
         from sarah.runs.run_record import RunRecord
@@ -144,6 +152,10 @@ def learned_of(subject: str, task: Task[Any] | None) -> tuple[EpisodeSpec, str |
         from sarah.runs.session_folder import SessionFolder
 
         return learned_of_session(Path(subject)).spec, SessionFolder.open(Path(subject)).spec().learner
+    if RECOGNITION.owns(Path(subject)):
+        from sarah.recognition.folder import RecognitionFolder
+
+        return RecognitionFolder.open(Path(subject)).best().spec, "one set for all"
     if Path(subject).is_dir():
         from sarah.runs.run_episodes import learned_episode
         from sarah.runs.run_folder import RunFolder

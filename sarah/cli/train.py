@@ -19,6 +19,8 @@ from sarah.cli.given_settings import say_differences, settings_of_file, settings
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_watch
+from sarah.cli.offline import OPTION as OFFLINE
+from sarah.cli.offline import train_offline
 from sarah.cli.options import as_command, named_task, parse_options, pushed_words, say_engine
 from sarah.cli.train_text import say_learned
 from sarah.cli.training_defaults import default_training
@@ -58,6 +60,8 @@ class TrainOptions:
     --episode.push.sagittal-share 0 --episode.time-limit 30, and those of a file of --config that names no others,
     unless --from is given.
 
+    With --offline and logs it learns from these instead, without simulation: sarah-train --offline --help.
+
     :param training: settings of the training
     :param out: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>
     :param config: YAML file of settings, like the config.yaml of any run folder
@@ -84,6 +88,9 @@ def main() -> None:
     arguments = [re.sub(r"^--simulations(?==|$)", "--episodes", argument) for argument in sys.argv[1:]]  # an alias
     if arguments and not arguments[0].startswith("-"):  # other commands begin with what they look at
         raise ConfigurationError(f"{arguments[0]!r} is no option: a task is given as --task {arguments[0]}")
+    if any(argument.partition("=")[0] == OFFLINE for argument in arguments):
+        train_offline(arguments)
+        return
     arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
     options = parse_options(TrainOptions, COMMAND, arguments, _defaults(arguments))
     config = options.training

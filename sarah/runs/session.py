@@ -9,7 +9,7 @@ from sarah.errors import ConfigurationError, check_whole, unknown_name
 from sarah.operation.settings import BOX, SHIPPED, OperationConfig, Parameters
 
 LARGEST_SEED = 2**31 - 1
-LEARNERS = ("none", "careful", "naf", "cma-es", "random")
+LEARNERS = ("none", "careful", "naf", "cma-es", "random", "recognise")
 """Names of the learners."""
 FORMER_LEARNERS = {"gp": "careful"}
 """Names of learners by their former ones, which are read for one release more."""
@@ -23,6 +23,7 @@ class SessionSpec:
     :param learner: name of the learner, one of :data:`LEARNERS`
     :param seed: seed of robot, world, noise, pushes and learner; a whole number, not negative
     :param config: settings of the operation
+    :param recognition: identity of the recognition of learner ``recognise``; empty for the one that the package ships
     :raises ConfigurationError: naming what is not allowed
     """
 
@@ -30,6 +31,7 @@ class SessionSpec:
     learner: str = "careful"
     seed: int = 0
     config: OperationConfig = field(default_factory=OperationConfig)
+    recognition: str = ""
 
     def __post_init__(self) -> None:
         """Convert values to their types, and refuse invalid specifications."""
@@ -38,6 +40,8 @@ class SessionSpec:
         object.__setattr__(self, "learner", FORMER_LEARNERS.get(self.learner, self.learner))
         if self.learner not in LEARNERS:
             raise ConfigurationError(unknown_name("learner", str(self.learner), LEARNERS))
+        if self.recognition and self.learner != "recognise":
+            raise ConfigurationError(f"recognition is for learner recognise, not {self.learner}")
         object.__setattr__(self, "seed", check_whole("seed", self.seed, 0, LARGEST_SEED))
 
     def extended_to(self, minutes: float) -> SessionSpec:
@@ -49,4 +53,4 @@ class SessionSpec:
 
     def frozen(self) -> SessionSpec:
         """The same robot in the same world, with the parameters of the beginning all along."""
-        return replace(self, learner="none")
+        return replace(self, learner="none", recognition="")

@@ -7,6 +7,7 @@ robot.yaml                                 a robot that runs by itself: where it
 events.out.tfevents.*                      curves for TensorBoard
 parameters.json                            the parameters that the robot is left with
 session.png  session.pdf                   score over time, with falls and changes
+recognition.json                           what logs teach, if it was given to learner recognise
 frozen/                                    the same session without learning, if it is compared with that
 """
 
@@ -48,12 +49,18 @@ class SessionFolder(Folder):
         super().__init__(path, SESSION)
         self.picture_path = path / "session"
         self.frozen_path = path / "frozen"
+        self.recognition_path = path / "recognition.json"
         self._windows_path = path / "windows.csv"
         self._robot_path = path / "robot.yaml"
 
     @classmethod
     def create(
-        cls, path: Path, spec: SessionSpec, compare_frozen: bool = False, robot: SessionRobot | None = None
+        cls,
+        path: Path,
+        spec: SessionSpec,
+        compare_frozen: bool = False,
+        robot: SessionRobot | None = None,
+        recognition: str = "",
     ) -> SessionFolder:
         """Make a new folder, and write the specification.
 
@@ -61,6 +68,7 @@ class SessionFolder(Folder):
         :param spec: specification of the session
         :param compare_frozen: whether it is to be compared with the same session without learning
         :param robot: robot that runs by itself, if the session does not simulate one
+        :param recognition: text of the recognition, if the specification names one
         :raises RunFolderError: if the folder is not empty or cannot be written
         """
         folder = cls(path)
@@ -70,6 +78,8 @@ class SessionFolder(Folder):
                 folder.add_frozen(spec)
             if robot is not None:
                 write_config(robot, folder._robot_path)
+            if recognition:
+                replace_text(folder.recognition_path, recognition)
             write_config(spec, folder.specification_path)
 
         folder.begin(write)

@@ -7,6 +7,7 @@ both are fixed, so that the first windows do not mislead it about what is safe.
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.stats import norm
@@ -21,6 +22,10 @@ DEVIATION = 0.3
 """Standard deviation of the reward between far parameters."""
 NOISE = 0.03
 """Standard deviation of the reward of the same parameters."""
+NOISE_OF_KNOWN = 0.1
+"""Standard deviation of what another robot of the same kind was worth with the same parameters."""
+ALMOST_NOTHING = 1e-10
+"""Variance that keeps the process's matrix regular."""
 PESSIMISM = 0.1
 """Reward by which parameters that nobody knows are expected to be worse than those of the beginning."""
 STEP = 0.05
@@ -66,13 +71,26 @@ class CarefulSearch:
     :param box: ranges of the parameters
     :param seed: seed of the draws
     :param first: parameters to begin with
+    :param known: parameters and rewards that others have had, which it believes a little until the robot changes
+    :param length: length over which the reward changes, as a share of each parameter's range
     """
 
-    def __init__(self, box: Box, seed: int, first: Parameters) -> None:
+    def __init__(
+        self,
+        box: Box,
+        seed: int,
+        first: Parameters,
+        known: Sequence[tuple[Parameters, float]] = (),
+        length: float = LENGTH,
+    ) -> None:
         self._box = box
         self._generator = np.random.default_rng([seed, len(first)])
-        kernel = ConstantKernel(DEVIATION**2) * Matern(LENGTH, nu=2.5)
-        self._model = GaussianProcessRegressor(kernel + WhiteKernel(NOISE**2), optimizer=None)
+        kernel = ConstantKernel(DEVIATION**2) * Matern(length, nu=2.5)
+        self._kernel = kernel + WhiteKernel(NOISE**2)
+        self._model = GaussianProcessRegressor(self._kernel, optimizer=None)
+        self._known = [np.array(box.shares(parameters)) for parameters, _ in known]
+        self._known_rewards = [reward for _, reward in known]
+        self._floor = -math.inf
         self._mean = 0.0
         self._first = self._start = self._asked = np.array(box.shares(first))
         self._tried: list[np.ndarray] = []
@@ -82,6 +100,8 @@ class CarefulSearch:
         self._shortfall = 0.0
         self._doubted = 0
         self._is_told, self._is_trial, self._disappoints, self._has_failed = True, False, False, False
+        self.lost = 0.0
+        """Reward by which the last window fell short of what was expected, if that is more than chance; else 0."""
 
     def ready(self) -> bool:
         """Not while parameters are being tried: the next ones depend on their reward."""
@@ -108,6 +128,7 @@ class CarefulSearch:
         expected, spread = self._foreseen(self._asked) if self._tried else (merit, NOISE)
         surprise = (expected - merit) / spread
         self._disappoints = surprise > DISAPPOINTING
+        self.lost = expected - merit if self._disappoints else 0.0
         counted = min(surprise, SURPRISE_OF_FALL if fell else DISAPPOINTING)
         self._shortfall = max(0.0, self._shortfall + counted - 0.5)
         self._doubted = self._doubted + 1 if self._disappoints or self._shortfall > 0.0 else 0
@@ -120,6 +141,24 @@ class CarefulSearch:
             self._forget()
         del self._tried[:-MOST_WINDOWS], self._rewards[:-MOST_WINDOWS], self._bounded[:-MOST_WINDOWS]
         self._fit()
+
+    def remember(self, parameters: Parameters, reward: float) -> None:
+        """Learn from a window of before the search; the first ones are those of the parameters to begin with.
+
+        :param parameters: parameters of the window
+        :param reward: its reward
+        """
+        self._tried.append(np.array(self._box.shares(parameters)))
+        self._rewards.append(reward)
+        self._bounded.append(reward)
+        self._fit()
+
+    def stay_above(self, reward: float) -> None:
+        """Risk no more than the usual loss against a reward that can be had otherwise.
+
+        :param reward: reward of other parameters than those to begin with
+        """
+        self._floor = reward
 
     def choice(self) -> Parameters:
         """The best of what was tried."""
@@ -142,13 +181,16 @@ class CarefulSearch:
         self._tried, self._rewards = self._tried[-self._doubted :], self._rewards[-self._doubted :]
         self._bounded = list(self._rewards)
         self._shortfall, self._doubted = 0.0, 0
+        self._known, self._known_rewards, self._floor = [], [], -math.inf
 
     def _fit(self) -> None:
         beginning = float(np.mean(self._rewards[:3]))
         self._mean = beginning - PESSIMISM
         # How deep a robot fell says nothing of the slope where it walks; a cliff would make the process ring.
-        rewards = np.maximum(self._bounded, beginning - 2.0 * LARGEST_LOSS)
-        self._model.fit(np.array(self._tried), rewards - self._mean)
+        rewards = np.maximum([*self._bounded, *self._known_rewards], beginning - 2.0 * LARGEST_LOSS)
+        uncertain = np.repeat([ALMOST_NOTHING, NOISE_OF_KNOWN**2], [len(self._tried), len(self._known)])
+        self._model = GaussianProcessRegressor(self._kernel, alpha=uncertain, optimizer=None)
+        self._model.fit(np.array([*self._tried, *self._known]), rewards - self._mean)
 
     def _expected(self, places: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Mean and standard deviation of the reward that the process expects, without the noise of a window."""
@@ -171,7 +213,7 @@ class CarefulSearch:
         changes *= self._generator.random(changes.shape) < SHARE
         places = np.clip(best + changes, 0.0, 1.0)
         mean, deviation = self._expected(places)
-        lowest = self._expected(self._start[None])[0][0] - LARGEST_LOSS
+        lowest = max(self._expected(self._start[None])[0][0], self._floor) - LARGEST_LOSS
         is_safe = mean - CAUTION * deviation >= lowest
         better = (mean - reward) / deviation
         improvement = (mean - reward) * norm.cdf(better) + deviation * norm.pdf(better)

@@ -7,17 +7,18 @@ from dataclasses import dataclass
 from functools import partial
 
 from sarah.episode.running_robot import Observer
-from sarah.errors import TrainingInterruptedError, check_type
+from sarah.errors import ResumeError, TrainingInterruptedError, check_type
 from sarah.operation.operated_robot import OperatedRobot
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import PARAMETERS, Parameters
 from sarah.operation.window import Window
 from sarah.process import apart
+from sarah.recognition.recognition import Recognition, read_recognition
 from sarah.recorded.journal import Journal
 from sarah.runs.event_file import EventFile
 from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
-from sarah.training.session_learners import LEARNERS
+from sarah.training.session_learners import learner_of
 
 MakeRobot = Callable[..., OperatedRobot]
 """Function that makes a robot of what :class:`~sarah.operation.robot_in_operation.RobotInOperation` is made of."""
@@ -55,6 +56,7 @@ def run_session(
     journal: Journal | None = None,
     observers: Sequence[Observer] = (),
     make_robot: MakeRobot = RobotInOperation,
+    recognition: Recognition | None = None,
 ) -> SessionResult:
     """Operate a robot from standing to the end of the operation's time.
 
@@ -63,10 +65,16 @@ def run_session(
     :param journal: journal of the session, whose windows are not simulated again; without one nothing is recorded
     :param observers: further records of what the robot does, in each window that is simulated
     :param make_robot: function that makes the robot; by default it is simulated
+    :param recognition: recognition that the specification names, if it names one
     :return: the result
-    :raises ResumeError: if the learner asks for other parameters than a window of the journal has
+    :raises ResumeError: if the recognition is another one, or if the learner asks for other parameters than a window of
+        the journal has
     """
     check_type("spec", spec, SessionSpec)
+    if spec.recognition != ("" if recognition is None else recognition.identity):
+        raise ResumeError(
+            f"the session has recognition {spec.recognition or 'of the package'}, and another one is given"
+        )
     windows: list[Window] = []
     with apart() as outside:
 
@@ -77,7 +85,7 @@ def run_session(
 
         robot = make_robot(spec.config, spec.seed, watch_outside, journal, observers)
         try:
-            parameters = LEARNERS[spec.learner](robot, spec.parameters, spec.seed)
+            parameters = learner_of(spec.learner, recognition)(robot, spec.parameters, spec.seed)
             robot.leave(parameters)
         finally:
             robot.close()
@@ -122,7 +130,8 @@ def operate(
                 raise TrainingInterruptedError("the session was interrupted")
 
         try:
-            result = run_session(spec, add, journal, observers, make_robot)
+            recognition = read_recognition(folder.recognition_path) if spec.recognition else None
+            result = run_session(spec, add, journal, observers, make_robot, recognition)
             journal.check_asked()
         finally:
             if events is not None:

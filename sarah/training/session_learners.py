@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 
 from sarah.operation.operated_robot import OperatedRobot
 from sarah.operation.settings import BOX, Parameters
+from sarah.recognition.recognition import Recognition, shipped_recognition
 from sarah.runs.agent_settings import AgentSettings, EvolutionSettings
 from sarah.training.optimisers import EvolutionStrategy, RandomSearch
 from sarah.training.search import Search, Start
@@ -54,12 +56,31 @@ def _naf(robot: OperatedRobot, first: Parameters, seed: int) -> Parameters:
     return operate_by_naf(robot, first, seed)
 
 
-LEARNERS: dict[str, Callable[[OperatedRobot, Parameters, int], Parameters]] = {
+def _recognise(
+    robot: OperatedRobot, first: Parameters, seed: int, recognition: Recognition | None = None
+) -> Parameters:
+    from sarah.training.recognise import operate_recognised  # slow to import because of scikit-learn
+
+    return operate_recognised(robot, first, seed, recognition or shipped_recognition())
+
+
+Learner = Callable[[OperatedRobot, Parameters, int], Parameters]
+LEARNERS: dict[str, Learner] = {
     "none": _none,
     "careful": _careful,
     "naf": _naf,
     "cma-es": _evolution,
     "random": _random,
+    "recognise": _recognise,
 }
 """Functions that operate a robot until its time is over, and return the parameters to leave it with: of the robot, the
 parameters of its first window and a seed."""
+
+
+def learner_of(name: str, recognition: Recognition | None = None) -> Learner:
+    """The learner of a session.
+
+    :param name: name of the learner
+    :param recognition: what logs teach, for the learner that recognises its robot; by default what the package ships
+    """
+    return LEARNERS[name] if recognition is None else partial(_recognise, recognition=recognition)

@@ -3,7 +3,6 @@
 import dataclasses
 import math
 from itertools import pairwise
-from types import SimpleNamespace
 from typing import Any
 
 import pytest
@@ -14,10 +13,10 @@ from sarah.episode.tasks import BalanceConfig
 from sarah.errors import ConfigurationError, DescriptionError
 from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import SHIPPED, Change, OperationConfig
-from sarah.operation.window import FELT, Window, WindowRecord
+from sarah.operation.window import FELT, Window
+from sarah.operation.window_record import FeltRecord
 from sarah.robot.description import describe_robot
 from sarah.robot.reading import STANDING
-from sarah.simulation.simulator import TorsoState
 
 STANDS = (0.0, 2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 0.0)
 """Parameters with which the robot hardly steps: it waits for a tilt that does not come."""
@@ -63,13 +62,10 @@ def test_a_robot_in_longer_operation_looks_to_the_next_end() -> None:
 
 
 def test_only_what_comes_after_settling_is_measured() -> None:
-    robot: Any = SimpleNamespace(description=describe_robot(), generator=SimpleNamespace(targets=(0.1,) * 6))
-    record = WindowRecord(robot, PushedConfig(), settle=2, measure=3)
-    torso = TorsoState((0.0, 0.0, 0.84), (0.0, 0.0, 0.0, 1.0), (0.0,) * 3, (0.0,) * 3)
+    record = FeltRecord(describe_robot().standing_height, PushedConfig(), settle=2, measure=3)
     for a_x in (9.0, 9.0, 1.0, 2.0, 3.0):
-        robot.last_reading = STANDING._replace(acceleration=(a_x, 0.0, 9.81))
-        record.sensed(robot)
-        record.judge(torso)
+        record.sensed(STANDING._replace(acceleration=(a_x, 0.0, 9.81)), (0.1,) * 6)
+        record.judge()
     felt = dict(zip(FELT, record.felt(), strict=True))
     assert (felt["a_x_mean"], felt["length_lag"]) == (2.0, 0.1)
 

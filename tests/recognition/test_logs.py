@@ -1,0 +1,137 @@
+"""Logs that are learned from, whoever wrote them."""
+
+import csv
+import dataclasses
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from sarah.episode.from_mapping import from_mapping
+from sarah.errors import ConfigurationError
+from sarah.logs.robot_log import RobotLog
+from sarah.logs.simulated import about_robot
+from sarah.operation.settings import BOX, SHIPPED, Change, OperationConfig
+from sarah.operation.window import FELT, Window
+from sarah.recognition.logs import facts_of, read_logs
+from sarah.runs.session import SessionSpec
+from sarah.runs.session_folder import SessionFolder
+
+WEAK = Change(0.1, {"randomisation": {"actuator_bandwidth": 12.0}})
+
+
+def window(index: int, changes: int = 0) -> Window:
+    felt = tuple(float(number) for number in range(len(FELT)))
+    return Window(index, 6.0 * index, 6.0, changes, SHIPPED, 0.9, 0.8, index == 1, felt)
+
+
+def session(path: Path, seed: int = 0, **settings: Any) -> Path:
+    config = OperationConfig(**{"changes": (WEAK,), **settings})
+    folder = SessionFolder.create(path, SessionSpec(learner="none", seed=seed, config=config))
+    for one in (window(0), window(1), window(2, changes=1)):
+        folder.append_window(one)
+    return path
+
+
+def table(path: Path, **changes: Any) -> Path:
+    row = {**dict(zip(BOX.names, SHIPPED, strict=True)), "observed_reward": 0.8, "fell": 0, **dict.fromkeys(FELT, 1.0)}
+    row |= changes
+    with path.open("w", newline="") as file:
+        file.write("# somebody else's robot\n")
+        writer = csv.DictWriter(file, [name for name, value in row.items() if value is not None], extrasaction="ignore")
+        writer.writeheader()
+        writer.writerow(row)
+    return path
+
+
+def test_a_session_is_cut_where_something_was_changed(tmp_path: Path) -> None:
+    before, after = read_logs([session(tmp_path / "session")])
+    assert (len(before.windows), len(after.windows)) == (2, 1)
+    assert before.kind == "as simulated" and "actuator_bandwidth" in after.kind
+    assert [one.fell for one in before.windows] == [False, True]
+    assert before.windows[0].reward == 0.8  # what the robot observed, and not its score
+
+
+def test_sessions_of_one_robot_are_put_together_and_of_one_kind_are_not(tmp_path: Path) -> None:
+    robots = read_logs([session(tmp_path / name, seed, changes=()) for name, seed in (("a", 0), ("b", 0), ("c", 1))])
+    assert [len(robot.windows) for robot in robots] == [6, 3]
+    assert robots[0].kind == robots[1].kind and robots[0].name != robots[1].name
+
+
+def test_a_table_of_the_same_columns_is_a_log(tmp_path: Path) -> None:
+    (robot,) = read_logs([table(tmp_path / "mine.csv", robot="mine", kind="heavy")])
+    assert (robot.name, robot.kind, robot.windows[0].parameters) == ("mine", "heavy", SHIPPED)
+    (robot,) = read_logs([table(tmp_path / "nameless.csv")])
+    assert robot.name == "nameless"
+
+
+@pytest.mark.parametrize(
+    ("changes", "reason"),
+    [
+        ({"P1": 7}, "P1 must be between 0 and 2"),
+        ({"V4": "exec"}, "V4 must be a number"),
+        ({"observed_reward": 1e300}, "observed_reward must be"),
+        ({"a_x_deviation": None}, "without a_x_deviation"),
+        ({"length_lag": "nan"}, "length_lag must be a number"),
+        ({"robot": "x" * 1000}, "names a robot"),
+        ({"changes": "many"}, "changes must be a number"),
+        ({"measure_seconds": 1e9}, "measure_seconds"),
+    ],
+)
+def test_a_hostile_table_is_named_with_what_is_wrong(changes: dict[str, Any], reason: str, tmp_path: Path) -> None:
+    file = table(tmp_path / "hostile.csv", **changes)
+    with pytest.raises(ConfigurationError) as error:
+        read_logs([file])
+    assert str(file) in str(error.value) and reason in str(error.value) and "\n" not in str(error.value)
+
+
+@pytest.mark.parametrize(
+    ("settings", "reason"),
+    [
+        ({"measure_seconds": 5.0}, "measure_seconds 5.0, not 4.0"),
+        ({"robot": {"controller": {"leg_speed": 2.0}}}, "leg_speed 2.0, not 1.0"),
+        ({"robot": {"physics": {"control_rate": 50}}}, "control_rate 50.0, not 100.0"),
+    ],
+)
+def test_logs_that_cannot_be_compared_are_refused_by_name(
+    settings: dict[str, Any], reason: str, tmp_path: Path
+) -> None:
+    config = from_mapping(OperationConfig(), settings)
+    others = {item.name: getattr(config, item.name) for item in dataclasses.fields(config)}
+    paths = [session(tmp_path / "first"), session(tmp_path / "other", **{**others, "changes": ()})]
+    with pytest.raises(ConfigurationError, match=reason) as error:
+        read_logs(paths)
+    assert str(paths[1]) in str(error.value)
+
+
+def test_what_is_no_log_is_named(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r"notes\.txt is no log"):
+        read_logs([tmp_path / "notes.txt"])
+    with pytest.raises(ConfigurationError, match="at least one log"):
+        read_logs([])
+
+
+def mcap(path: Path, facts: dict[str, str] | None = None, duration: float = 6.0) -> Path:
+    config = OperationConfig()
+    with RobotLog(path, about_robot(config.robot, "a program", **(facts or {}))) as log:
+        plain = window(0).plain()
+        log.window(6.0, {**plain, "seconds": duration})
+    return path
+
+
+def test_the_windows_of_an_mcap_file_are_a_log(tmp_path: Path) -> None:
+    (robot,) = read_logs([mcap(tmp_path / "robot.mcap", facts_of(OperationConfig(), 3))])
+    (same,) = read_logs([session(tmp_path / "session", 3, changes=())])
+    assert robot.windows[0] == same.windows[0]
+    assert (robot.name, robot.kind, robot.conditions) == (same.name, same.kind, same.conditions)
+
+
+def test_an_mcap_file_with_other_windows_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigurationError, match=r"long\.mcap has a window of 9 s, not of 6 s"):
+        read_logs([mcap(tmp_path / "long.mcap", duration=9.0)])
+    with pytest.raises(ConfigurationError, match=r"settle_seconds must be between"):
+        read_logs([mcap(tmp_path / "hostile.mcap", {"settle_seconds": "1e9"})])
+    with RobotLog(tmp_path / "empty.mcap", {}):
+        pass
+    with pytest.raises(ConfigurationError, match=r"empty\.mcap has no windows"):
+        read_logs([tmp_path / "empty.mcap"])
