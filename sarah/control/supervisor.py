@@ -321,8 +321,8 @@ class Supervisor:
 
     @property
     def tilt(self) -> float:
-        """Lateral acceleration towards the stance leg, in m/s^2."""
-        return self.generator.tilt
+        """Lateral acceleration towards the stance leg, in m/s^2; 0 while the generator does not run."""
+        return 0.0 if self.is_waiting or self.state is State.STOPPING else self.generator.tilt
 
     @property
     def rate(self) -> float:

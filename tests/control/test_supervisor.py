@@ -1,5 +1,6 @@
 """The supervisor against hand-made readings: what stops the robot, how it stops, and when it steps again."""
 
+import itertools
 import math
 import random
 from collections.abc import Callable, Iterator
@@ -308,6 +309,18 @@ def test_the_words_of_who_stops_it_are_no_fault() -> None:
     for tick in range(110):  # it was asked to step while it stopped
         supervisor.tick(noisy(STANDING, tick))
     assert supervisor.state is State.STEPPING
+
+
+def test_a_robot_that_stands_has_no_tilt_of_its_last_step() -> None:
+    supervisor = supervised()
+    for reading in itertools.islice(readings(), 500):
+        supervisor.tick(reading)
+    assert supervisor.tilt != 0.0
+    supervisor.stand()
+    for tick in range(200):
+        supervisor.tick(noisy(STANDING, tick))
+        assert supervisor.tilt == 0.0
+    assert supervisor.state is State.STANDING
 
 
 def test_times_that_are_none_count_as_a_period() -> None:
