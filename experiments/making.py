@@ -57,11 +57,17 @@ def make(module: ModuleType, command: str, arguments: Sequence[str]) -> Path:
         raise record.ResultError(f"commit first what a result is made of: {', '.join(changed[:3])} has changes")
     folder.mkdir(parents=True, exist_ok=True)
     whole = re.sub(r" --workers[ =]\S+", "", shlex.join([*command.split(), *arguments]))  # no row depends on them
-    result = _begun(module, folder, whole)
-    if result.name in record.names() and (known := record.read(result.name).minutes):
-        seconds = 60.0 * known * len(cases) / len(every)
-        print(f"that takes about {tqdm.format_interval(seconds)} of one core (minutes:seconds)", file=sys.stderr)
-    _compute(experiment, cases, result, folder)
+    place = _place(module.__name__.rpartition(".")[2], folder)
+    place.mkdir(parents=True, exist_ok=True)
+    result = _begun(module, place, whole)
+    left = _left(cases, result)
+    if result.name in record.names() and (known := record.read(result.name)).minutes:
+        minutes = known.minutes * len(left) / max(1, len(every) - known.missing)
+        print(f"that takes about {max(1, round(minutes))} minutes with one worker", file=sys.stderr)
+    _compute(experiment, left, result, place)
+    if place != folder:
+        record.write(record.read(result.name, place), folder)
+        (place / f"{result.name}.csv").unlink()
     return folder / f"{result.name}.csv"
 
 
@@ -104,6 +110,20 @@ def _chosen(cases: Sequence[Row], only: Iterable[str]) -> list[Row]:
     return [case for case in cases if all(cell(case[key]) in values for key, values in wanted.items())]
 
 
+def _place(name: str, folder: Path) -> Path:
+    """Folder in which rows are kept as they come: a result that is complete stays until the new one is."""
+    if name not in record.names(folder) or record.read(name, folder).missing:
+        return folder
+    print(f"{folder / name}.csv stays as it is until all cases are computed", file=sys.stderr)
+    return OTHER_RESULTS / "unfinished"
+
+
+def _left(cases: Sequence[Row], result: Result) -> list[Row]:
+    """Cases that a result lacks."""
+    known = {tuple(row[column] for column in cases[0]) for row in result.rows}
+    return [case for case in cases if tuple(map(cell, case.values())) not in known]
+
+
 def _begun(module: ModuleType, folder: Path, command: str) -> Result:
     """The result that this command has begun, or a new one."""
     commit = record.commit()
@@ -130,10 +150,8 @@ def _listed(used: Mapping[str, str], before: Mapping[str, str] | None = None) ->
     return ", ".join(f"{name} {' and '.join(those)}" for name, those in every.items())
 
 
-def _compute(experiment: Experiment, cases: Sequence[Row], result: Result, folder: Path) -> None:
+def _compute(experiment: Experiment, left: Sequence[Row], result: Result, folder: Path) -> None:
     """Compute the cases that a result lacks, and write it after each."""
-    known = {tuple(row[column] for column in cases[0]) for row in result.rows}
-    left = [case for case in cases if tuple(map(cell, case.values())) not in known]
     rows, seconds = [*result.rows], 60.0 * (result.minutes or 0.0)
     with tqdm(total=len(left), unit=" cases") as progress:
         for number, (made, duration) in enumerate(experiment.outcomes(left), start=1):

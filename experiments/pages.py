@@ -67,11 +67,23 @@ def _source(cases: Sequence[Row], result: Result) -> str:
     sentences = [
         result.remark,
         "Some cases are still to be made." if result.missing else "",
-        f"{result.made_at} by `{command}`.",
+        f"{result.made_at} by `{command}`{_duration(result)}.",
         f"One of its cases alone: `{command} {only}`." if only else "",
         f"[Data](../../results/{result.name}.csv)",
     ]
     return _filled(" ".join(filter(None, sentences)))
+
+
+def _duration(result: Result) -> str:
+    """How long the cases took that have been made, in words."""
+    if not result.minutes:
+        return ""
+    minutes = round(result.minutes)
+    if minutes < 2:
+        return ", in a minute or two"
+    return (
+        f", in {minutes} minutes with one worker" if minutes < 120 else f", in {minutes / 60:.0f} hours with one worker"
+    )
 
 
 def _command(name: str) -> str:

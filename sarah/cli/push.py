@@ -134,5 +134,5 @@ def _say_state(telemetry: Telemetry, as_json: bool) -> None:
         return
     print(f"state: {telemetry.state}" + (f" ({telemetry.reason})" if telemetry.reason else ""))
     print(f"time: {telemetry.seconds:.2f} s, tick {telemetry.tick}, {telemetry.late_ticks} late ticks")
-    print(f"steps: {telemetry.steps_per_second:g} per second, phase {telemetry.phase}, tilt {telemetry.tilt:+.2f} m/s²")
+    print(f"steps: {telemetry.steps_per_second:g} per second, phase {telemetry.phase}")
     print("parameters: " + ", ".join(f"{name} {value:g}" for name, value in telemetry.parameters.items()))

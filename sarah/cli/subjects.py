@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -116,7 +116,7 @@ def _logged_episode(path: Path) -> RunEpisode:
     from sarah.runs.run_episodes import RunEpisode
 
     spec = spec_of_log(path)
-    return RunEpisode(path.name, f"log {path.name}", spec, recorded=partial(played, path, spec.robot))
+    return RunEpisode(path.name, f"log {path.name}", spec, recorded=cache(partial(played, path, spec.robot)))
 
 
 def episode_of(subject: str, which: str | None, task: Task[Any] | None) -> RunEpisode:

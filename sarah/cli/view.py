@@ -84,6 +84,8 @@ def main() -> None:
         chosen = chosen.of(dataclasses.replace(chosen.spec, seed=options.seed))
         chosen = dataclasses.replace(chosen, label=f"{chosen.label}, with seed {options.seed}")
         choices.insert(0, chosen)
+    if chosen.recorded is not None:
+        chosen.recorded()  # a log that cannot be played is refused before a page opens
     if options.robot is not None:
         if options.out is not None:
             raise ConfigurationError("--robot shows a robot as it runs: leave --out out")

@@ -93,7 +93,7 @@ def test_the_tutorial(tmp_path: Path) -> None:
     assert "simulated by" in learned and "observed" not in learned and "score  " in learned
     assert resumed == "learned is finished: to go on, add --minutes with more than its 0.1\n"
     assert stood.startswith("applied at tick")
-    log, _, judged = (done(*words, cwd=tmp_path).stdout for words in commands[after:])
+    log, _, _, judged = (done(*words, cwd=tmp_path).stdout for words in commands[after:])
     windows = SessionFolder.open(tmp_path / "learned").windows()
     assert (
         re.search(rf"windows +{len(windows)}, observed reward", log) and (tmp_path / "run.html").stat().st_size > 10_000

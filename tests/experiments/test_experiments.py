@@ -116,6 +116,17 @@ def test_what_was_interrupted_goes_on(tmp_path: Path) -> None:
     assert [row["square"] for row in whole.rows] == ["0", "-0", "1", "-7", "4", "-4"] and not whole.missing
 
 
+def test_a_complete_result_stays_until_the_new_one_is(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
+    monkeypatch.setattr("experiments.making.OTHER_RESULTS", tmp_path / "other")
+    whole = made(tmp_path, Squares())
+    assert made(tmp_path, Squares(fails_at=1)) == whole
+    (begun,) = (tmp_path / "other" / "unfinished").iterdir()
+    begun.write_text(begun.read_text().replace("0,1,0", "0,1,-7"))
+    again = made(tmp_path, Squares())
+    assert [row["square"] for row in again.rows] == ["-7", "-0", "1", "-1", "4", "-4"] and not again.missing
+    assert not begun.exists()
+
+
 def test_rows_of_before_keep_what_their_head_says(tmp_path: Path) -> None:
     begun = made(tmp_path, Squares(fails_at=1))
     record.write(dataclasses.replace(begun, tree="dirty", remark="Squares were rounder."), tmp_path)
