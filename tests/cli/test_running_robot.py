@@ -7,7 +7,6 @@ the tutorial is about.
 import contextlib
 import re
 import shlex
-import signal
 import subprocess
 import time
 import urllib.request
@@ -33,14 +32,14 @@ SHORT = ("--settle-seconds", "0", "--measure-seconds", "0.5")
 
 @contextmanager
 def begun(words: list[str], folder: Path) -> Iterator[subprocess.Popen[str]]:
-    """A command in a process of its own, which ends by Ctrl-C."""
+    """A command in a process of its own, which is asked to end."""
     process = subprocess.Popen(
         [str(BIN / words[0]), *words[1:]], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
     try:
         yield process
     finally:
-        process.send_signal(signal.SIGINT)
+        process.terminate()
         process.communicate(timeout=60)
 
 
