@@ -268,6 +268,8 @@ class Supervisor:
             self._is_to_step = False
         if state is State.STOPPING:
             self._stopped_for = reason
+        elif state is State.FALLEN:  # it does not step again with parameters that may have felled it
+            self.asked = self._proven or self.asked
 
     @property
     def is_proven(self) -> bool:

@@ -237,6 +237,21 @@ def test_parameters_that_do_not_step_are_replaced_by_those_that_did() -> None:
     assert supervisor.state_change.reason == "the parameters before are back: no step for 2.0 s"
 
 
+def test_after_a_fall_it_steps_with_what_worked_before() -> None:
+    supervisor, others = supervised(), SteppingParameters(0.5, 0.7, 1.2, 0.6, 1.9)
+    for _, reading in zip(range(700), readings(), strict=False):
+        supervisor.tick(reading)
+    supervisor.set_parameters(others)
+    lying = STANDING._replace(acceleration=(-9.81 * math.sin(0.7), 0.0, 9.81 * math.cos(0.7)))
+    for tick in range(300):
+        supervisor.tick(noisy(lying, tick))
+    assert supervisor.has_fallen and supervisor.asked[0] == STEPPING
+    supervisor.step()
+    for tick in range(200):
+        supervisor.tick(noisy(STANDING, tick))
+    assert supervisor.generator.parameters == STEPPING
+
+
 def test_ticks_that_come_late_stop_it() -> None:
     once, often = supervised(), supervised()
     for tick, reading in zip(range(800), readings(), strict=False):
