@@ -43,6 +43,7 @@ class Decisions(Timing):
     :param rounds: number of decisions that are timed
     """
 
+    depends_on = ("agents", "sarah/training")
     episodes: tuple[int, ...] = (1000, 10_000, 100_000)
     rounds: int = 51
 

@@ -16,6 +16,7 @@ from typing import NamedTuple
 from pandas import DataFrame
 
 from benchmarks.timing import Timing
+from experiments.experiment import EPISODE
 from experiments.record import Row
 from experiments.tables import table
 from sarah.drivers.loop import LoopTick
@@ -48,6 +49,7 @@ class RealTimeLoops(Timing):
     :param seconds: duration of a turn, in s
     """
 
+    depends_on = (*EPISODE, "sarah/drivers", "sarah/logs")
     rounds: int = 20
     seconds: float = 30.0
 

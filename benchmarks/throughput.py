@@ -23,6 +23,7 @@ from typing import Any
 from pandas import DataFrame
 
 from benchmarks.timing import Timing
+from experiments.experiment import TRAINING
 from experiments.record import Row
 from experiments.tables import turned_table
 from sarah.control.pattern_generator import STAND_SECONDS, Phase
@@ -56,6 +57,7 @@ class Throughput(Timing):
     :param time_limit: time limit of a training's episode, in s
     """
 
+    depends_on = TRAINING
     rounds: int = 5
     loop_seconds: float = 11.0
     trainings: int = 3

@@ -49,6 +49,7 @@ class Updates(Timing):
     :param batch_size: number of transitions in the minibatch of an update
     """
 
+    depends_on = ("agents",)
     updates: int = 60
     rounds: int = 7
     batch_size: int = 256

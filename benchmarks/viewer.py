@@ -23,6 +23,7 @@ import playwright.sync_api as playwright
 from pandas import DataFrame
 
 from benchmarks.timing import Timing
+from experiments.experiment import EPISODE
 from experiments.record import Row
 from experiments.tables import table
 from sarah.episode.episode import simulate
@@ -52,6 +53,7 @@ class Viewer(Timing):
     :param seconds: time over which frames are counted, in s
     """
 
+    depends_on = (*EPISODE, "sarah/viewer")
     rounds: int = 3
     seconds: float = 10.0
 

@@ -48,7 +48,7 @@ def age(result: record.Result, folders: tuple[str, ...]) -> str:
     if record.git("merge-base", "--is-ancestor", first, "HEAD") is None:
         return f"cannot tell, as {first} is no earlier commit of this one"
     count = record.git("rev-list", "--count", f"{first}..HEAD", "--", *folders)
-    return f"{count} commits since have touched {', '.join(folders)}"
+    return f"{count} commits since have touched what it depends on"
 
 
 def run(package: Package) -> None:
