@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from sarah.recognition.recognition import Recognition
 
 COMMAND = "sarah-train"
-OPTION = "--offline"
 
 
 @dataclass(frozen=True)

@@ -19,8 +19,6 @@ from sarah.cli.given_settings import say_differences, settings_of_file, settings
 from sarah.cli.going_on import check_extendable, check_same, finished_words
 from sarah.cli.interruption import interruptible
 from sarah.cli.next_steps import say_next, to_see, to_watch
-from sarah.cli.offline import OPTION as OFFLINE
-from sarah.cli.offline import train_offline
 from sarah.cli.options import as_command, named_task, parse_options, pushed_words, say_engine
 from sarah.cli.train_text import say_learned
 from sarah.cli.training_defaults import default_training
@@ -44,6 +42,8 @@ if TYPE_CHECKING:
     from sarah.training.train import Learned
 
 COMMAND = "sarah-train"
+OFFLINE = "--offline"
+"""Option that makes the command learn from logs; the others are then those of :mod:`sarah.cli.offline`."""
 
 
 @dataclass(frozen=True)
@@ -89,6 +89,8 @@ def main() -> None:
     if arguments and not arguments[0].startswith("-"):  # other commands begin with what they look at
         raise ConfigurationError(f"{arguments[0]!r} is no option: a task is given as --task {arguments[0]}")
     if any(argument.partition("=")[0] == OFFLINE for argument in arguments):
+        from sarah.cli.offline import train_offline
+
         train_offline(arguments)
         return
     arguments = with_out(COMMAND, arguments, {"--run-dir": "--out"})
