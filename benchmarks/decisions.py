@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 from pandas import DataFrame
+from threadpoolctl import threadpool_limits
 
 from benchmarks.timing import Timing
 from experiments.record import Row
@@ -56,6 +57,10 @@ class Decisions(Timing):
 
         :param episodes: number of episodes
         """
+        with threadpool_limits(1):  # as in a training
+            yield self._times(episodes)
+
+    def _times(self, episodes: int) -> Row:
         generator = np.random.default_rng(0)
         actions = generator.uniform(-1, 1, (episodes, len(CENTRE)))
         disturbances = generator.random((episodes, len(DISTURBANCES)))
@@ -67,7 +72,7 @@ class Decisions(Timing):
             remember(action, reward, own, buffer, tried)
         note = milliseconds(partial(tried.append, CENTRE, 0.5, DISTURBANCES), self.rounds)
         recommend = milliseconds(partial(tried.best, CENTRE), self.rounds)
-        yield {
+        return {
             "action_milliseconds": milliseconds(partial(decide, buffer), self.rounds) / ADDITIONS_PER_CHOICE,
             "recommendation_milliseconds": note + recommend / EPISODES_PER_RECOMMENDATION,
         }
