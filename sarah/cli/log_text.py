@@ -71,9 +71,11 @@ def _rows_of_parameters(summary: Summary) -> Iterator[Row]:
     asked = summary.parameters
     if not asked:
         return
+    applied = [values for values in asked if values["accepted"]]
     refused = Counter(values["reason"] for values in asked if not values["accepted"])
+    last = f", the last at {applied[-1]['seconds']:.2f} s by {applied[-1]['by']}" if applied else ""
     why = "".join(f"; refused: {count} times {reason}" for reason, count in refused.most_common(3))
-    yield "parameters", f"{_count(len(asked), 'set')} asked for, {len(asked) - refused.total()} applied{why}"
+    yield "parameters", f"{_count(len(asked), 'set')} asked for, {len(applied)} applied{last}{why}"
 
 
 def _gaps(summary: Summary) -> str:

@@ -34,7 +34,8 @@ def test_a_summary_says_what_was_logged(folder: Path) -> None:
         "states           0.00 s stepping: stood for a second",
         "steps            4, 4.04 per second of stepping",
         "ended by sensors LAND 75.0 %",
-        "parameters       2 sets asked for, 1 applied; refused: 1 times P1 must be between 0 and 2, not 9.0",
+        "parameters       2 sets asked for, 1 applied, the last at 0.00 s by careful; "
+        "refused: 1 times P1 must be between 0 and 2, not 9.0",
         "windows          1, observed reward 0.800 on average; falls: 0",
     ]
     assert lines[-len(rest) :] == rest
