@@ -46,7 +46,6 @@ class Rocking(Driver):
 
 
 def steps() -> Supervisor:
-    """Controller of a robot with the paper's parameters."""
     enabled = SupervisorSettings(enabled=True)
     return Supervisor(SteppingParameters(*PAPER_STEPPING), BALANCE, DT, settings=enabled)
 
@@ -93,7 +92,6 @@ class Rig:
 
 
 def outcomes(answers: list[Any]) -> list[str]:
-    """What answers say in a word each."""
     return ["window" if isinstance(one, Measured) else one.outcome.value for one in answers]
 
 
@@ -105,7 +103,6 @@ def free_port() -> int:
 
 @contextmanager
 def running(loop: ControlLoop) -> Iterator[None]:
-    """A loop that ticks in a thread."""
     stop = threading.Event()
 
     def run() -> None:
@@ -123,7 +120,6 @@ def running(loop: ControlLoop) -> Iterator[None]:
 
 @contextmanager
 def robot(endpoint: Endpoint) -> Iterator[ControlLoop]:
-    """A robot that steps and listens."""
     with closing(Server(endpoint, LearnedWith(), Slot(DT))) as server:
         supervisor = steps()
         loop = ControlLoop(Rocking(), supervisor, *supervisor.asked, DT, RealTime(DT / FASTER), [server])

@@ -19,7 +19,7 @@ LONGEST = 40
 ENGINES = {"two_engines": ("pybullet", "mujoco")}
 ARGUMENTS = {"naf_on_pendulum": ("100",)}
 WITHOUT_ROS = ("relay_to_ros",)
-"""Examples that test_relay.py runs."""
+"""Examples that have a test of their own, below."""
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.py")), ids=lambda path: path.stem)

@@ -38,7 +38,7 @@ from sarah.training.operate import run_session
 SPEC = EpisodeSpec(SHIPPED[5:], 3, BALANCE, BALANCE.config_of(BALANCE.episode, time_limit=2.5, physics=COARSE_PHYSICS))
 
 
-def test_an_episodes_log_agrees_with_its_trace_and_leaves_its_result(tmp_path: Path) -> None:
+def test_an_episodes_log_agrees_with_trace_and_leaves_the_result(tmp_path: Path) -> None:
     logged = log_episode(SPEC, tmp_path / "a.mcap", "test")
     known = simulate(SPEC, record_trace=True)
     assert logged == known and known.trace is not None

@@ -53,7 +53,7 @@ def test_what_was_logged_is_read_to_the_bit(tmp_path: Path) -> None:
     assert log.about["program"] == "a test" and log.end == {"dropped": "0"} and log.problem is None
 
 
-def test_numbers_of_any_type_are_logged_and_what_is_none_is_left_out(tmp_path: Path) -> None:
+def test_numbers_of_any_type_are_logged_and_no_others(tmp_path: Path) -> None:
     path, strange = tmp_path / "a.mcap", (np.float32(0.5), float("nan"), 9)
     with RobotLog(path, {}) as log:
         tick(log, 0, rocking(0)._replace(acceleration=strange))  # type: ignore[arg-type]
@@ -78,9 +78,7 @@ def test_no_log_is_replaced(tmp_path: Path) -> None:
     assert path.read_bytes() == before
 
 
-def test_a_slow_disk_costs_messages_that_are_counted_and_never_time(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_slow_disk_costs_counted_messages_and_never_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     disk, written, add = threading.Event(), threading.Semaphore(0), ChunkFile.add
 
     def slow(*arguments: Any) -> None:
@@ -120,7 +118,6 @@ def test_a_full_disk_ends_the_log_with_its_last_whole_chunk(tmp_path: Path, monk
 
 
 def fill(path: Path) -> None:
-    """Log ticks as fast as it goes."""
     with RobotLog(path, {}, waits=True) as log:
         for number in itertools.count():
             tick(log, number)

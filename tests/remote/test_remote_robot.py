@@ -50,7 +50,7 @@ def learn(learner: str, config: OperationConfig, connect: Callable[[], Connectio
 
 
 @pytest.mark.parametrize("learner", ["careful", "random"])
-def test_windows_through_a_socket_have_the_bytes_of_those_in_one_process(engine: str, learner: str) -> None:
+def test_windows_through_a_socket_are_those_of_one_process(engine: str, learner: str) -> None:
     pytest.importorskip("zenoh")
     loop, slot, settings = simulated(engine)
     config = dataclasses.replace(quick(minutes=0.15), robot=settings_of(identity_of(settings, "it", True, True)))
@@ -132,7 +132,7 @@ def test_what_ends_a_session_is_not_asked_again(script: list[Any], words: str) -
     assert len(connection.requests) == (script != ["nobody"] * 3) and robot.windows == 0
 
 
-def test_a_window_that_is_lost_is_asked_for_again_and_the_learner_says_why() -> None:
+def test_a_lost_window_is_asked_for_again_and_one_hears_why() -> None:
     lost = [APPLIED, "breaks", "nobody", "nobody", Answer(Outcome.BUSY, "a learner operates the robot")]
     stood = [APPLIED, Answer(Outcome.STOPPED, "asked to stand"), Answer(Outcome.WAITING, "it stands", False)]
     waited = [Answer(Outcome.WAITING, "it stands"), Answer(Outcome.WAITING, "it stands", False)]

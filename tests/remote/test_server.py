@@ -92,7 +92,7 @@ def test_without_zenoh_one_line_names_the_extra(monkeypatch: pytest.MonkeyPatch)
 pytest.importorskip("zenoh")
 
 
-def test_a_push_is_answered_when_it_is_applied_and_when_it_is_kept() -> None:
+def test_a_push_is_answered_when_applied_and_when_kept() -> None:
     endpoint = Endpoint(f"tcp/127.0.0.1:{free_port()}")
     with robot(endpoint), Client(endpoint) as client:
         applied, kept = client.ask(Request("push", {"V1": 0.5}, LearnedWith()))
@@ -102,7 +102,7 @@ def test_a_push_is_answered_when_it_is_applied_and_when_it_is_kept() -> None:
         assert refused.reason == "learned with another robot or controller: control_rate is 50 and not 100"
 
 
-def test_a_robot_stays_within_reach_when_something_cannot_be_sent(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_robot_stays_within_reach_if_something_cannot_be_sent(monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(message: Any) -> bytes:
         if isinstance(message, Telemetry):
             raise TypeError("no JSON")
@@ -143,7 +143,7 @@ def test_a_unix_socket_is_the_users_alone(tmp_path: Path) -> None:
         assert (tmp_path / "robot").stat().st_mode & 0o077 == 0
 
 
-def test_what_is_no_request_changes_nothing_and_no_answer_is_late() -> None:
+def test_what_is_no_request_changes_nothing_and_nobody_is_late() -> None:
     endpoint = Endpoint(f"tcp/127.0.0.1:{free_port()}")
     with robot(endpoint) as loop, Client(endpoint) as client, closing(endpoint.opened(listens=False)) as session:
         came: list[bytes] = []
@@ -215,7 +215,7 @@ def authority(folder: Path) -> Callable[[str], Certificates]:
     return certificates
 
 
-def test_a_stranger_with_a_certificate_of_another_authority_is_refused(tmp_path: Path) -> None:
+def test_a_certificate_of_another_authority_is_refused(tmp_path: Path) -> None:
     ours, theirs = authority(tmp_path / "ours"), authority(tmp_path / "theirs")
     address, mine, strange = f"tls/127.0.0.1:{free_port()}", ours("me"), theirs("stranger")
     with robot(Endpoint(address, ours("robot"))):
@@ -228,7 +228,7 @@ def test_a_stranger_with_a_certificate_of_another_authority_is_refused(tmp_path:
 STEP = PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
 
 
-def test_it_is_due_twenty_times_a_second_and_counts_steps_and_late_ticks() -> None:
+def test_telemetry_is_due_and_counts_steps_and_late_ticks() -> None:
     supervisor: Any = SimpleNamespace(
         state=State.STEPPING,
         phase=Phase.LIFT,

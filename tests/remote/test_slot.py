@@ -19,7 +19,7 @@ from sarah.remote.moment import present
 SWAP = PhaseChange(Phase.LAND, by_sensors=True, is_step=True)
 
 
-def test_it_is_applied_when_the_legs_swap_and_kept_after_five_seconds() -> None:
+def test_it_is_applied_when_legs_swap_and_kept_in_five_seconds() -> None:
     rig = Rig()
     rig.step(300)
     swaps = len(rig.swaps)
@@ -37,7 +37,7 @@ def test_it_is_applied_when_the_legs_swap_and_kept_after_five_seconds() -> None:
     assert kept.outcome is Outcome.KEPT and kept.is_final and kept.tick == rig.swaps[swaps] + 501
 
 
-def test_one_that_does_not_step_is_replaced_and_its_pusher_hears_why() -> None:
+def test_one_that_does_not_step_is_replaced_and_one_hears_why() -> None:
     rig = Rig()
     rig.step(800)  # the first ones are proven
     answers = rig.ask(P1=2.0, P2=2.0)
@@ -48,7 +48,7 @@ def test_one_that_does_not_step_is_replaced_and_its_pusher_hears_why() -> None:
     assert present(rig.supervisor)[:2] == PAPER_STEPPING[:2]
 
 
-def test_a_robot_that_stands_takes_them_at_once_and_tries_them_when_it_steps() -> None:
+def test_a_robot_that_stands_takes_them_and_tries_them_later() -> None:
     rig = Rig()
     first = rig.ask(V1=0.2)
     rig.step(49)
@@ -68,7 +68,7 @@ def test_a_robot_that_stands_takes_them_at_once_and_tries_them_when_it_steps() -
     assert rig.supervisor.state is State.STEPPING and rig.supervisor.generator.hips.parameters.V1 == 0.3
 
 
-def test_one_that_was_asked_to_stand_in_the_same_tick_does_not_step_already() -> None:
+def test_one_asked_to_stand_in_the_same_tick_does_not_step() -> None:
     rig = Rig()
     rig.step(300)
     (stand, answers), (step, others) = rig.request("stand"), rig.request("step")
@@ -90,7 +90,7 @@ def test_newer_parameters_take_the_slot_and_the_place_on_trial() -> None:
     assert outcomes(third) == ["applied", "ended"] and third[1].reason == "the end"
 
 
-def test_a_large_change_is_refused_also_when_others_came_back_meanwhile() -> None:
+def test_a_large_change_is_refused_also_if_others_came_back() -> None:
     rig = Rig()
     rig.step(300)
     (first, _), (second, overtaken) = rig.request(V3=-1.5), rig.request(V1=-2.0)
@@ -129,7 +129,6 @@ class Scripted:
         self.asked = stepping, balance
 
     def happens(self, event: str) -> None:
-        """What a supervisor may do in a tick."""
         if event == "prove" and self.state is State.STEPPING:
             self.proven = self.asked
         elif event == "put back" and self.state is State.STEPPING:
@@ -149,7 +148,7 @@ def scripted(state: State = State.STEPPING) -> Rig:
     return rig
 
 
-def test_a_push_of_the_first_second_is_compared_with_the_robots_own_parameters() -> None:
+def test_a_push_of_the_first_second_is_compared_with_the_own() -> None:
     rig = Rig()
     answers = rig.ask(V1=-1.9)
     rig.step(49)

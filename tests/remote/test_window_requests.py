@@ -21,19 +21,17 @@ MEASURES: dict[str, Any] = {"largest_change": 1.0, "meter": Meter(PushedConfig()
 
 
 def window(rig: Rig, learner: str = "one", **values: float) -> list[Any]:
-    """Answers to somebody who asks for a window."""
     return rig.ask("window", learner, **values)
 
 
 @pytest.fixture
 def rig() -> Rig:
-    """A robot that steps."""
     rig = Rig(**MEASURES)
     rig.step(300)
     return rig
 
 
-def test_a_window_settles_and_is_measured_from_the_next_swap_of_legs_on(rig: Rig) -> None:
+def test_a_window_settles_and_is_measured_from_a_swap_of_legs_on(rig: Rig) -> None:
     answers = window(rig, V1=0.5)
     asked = rig.ticks - 1
     rig.step(400)
@@ -48,7 +46,7 @@ def test_a_window_settles_and_is_measured_from_the_next_swap_of_legs_on(rig: Rig
     assert rig.slot.is_idle
 
 
-def test_a_robot_that_stopped_by_itself_steps_again_after_a_second_of_standing(rig: Rig) -> None:
+def test_a_robot_that_stopped_steps_again_after_a_second(rig: Rig) -> None:
     rig.supervisor.stand("a fault")
     rig.step(100)
     assert rig.supervisor.is_waiting
@@ -58,7 +56,7 @@ def test_a_robot_that_stopped_by_itself_steps_again_after_a_second_of_standing(r
     assert rig.supervisor.state is State.STEPPING
 
 
-def test_one_that_stops_within_a_window_is_measured_to_its_end_and_told(rig: Rig) -> None:
+def test_one_that_stops_is_measured_to_the_end_and_told(rig: Rig) -> None:
     answers = window(rig, V1=0.5)
     rig.step(50)
     rig.step(350, gone=True)
@@ -78,7 +76,7 @@ def test_parameters_that_were_put_back_end_their_window(rig: Rig) -> None:
     assert present(rig.supervisor)[:2] == PAPER_STEPPING[:2]
 
 
-def test_somebody_who_lets_the_robot_stand_stops_the_learner_until_it_is_let_go(rig: Rig) -> None:
+def test_who_lets_the_robot_stand_stops_the_learner(rig: Rig) -> None:
     answers = window(rig, V1=0.5)
     rig.step(100)
     assert outcomes(rig.ask("stand")) == ["applied"] and outcomes(answers) == ["applied", "stopped"]
@@ -92,7 +90,7 @@ def test_somebody_who_lets_the_robot_stand_stops_the_learner_until_it_is_let_go(
     assert outcomes(again)[-2:] == ["applied", "window"]
 
 
-def test_the_robot_is_its_learners_until_that_is_silent_or_leaves_it(rig: Rig) -> None:
+def test_the_robot_is_its_learners_until_that_leaves_it(rig: Rig) -> None:
     first = window(rig, V1=0.5)
     assert outcomes(window(rig, learner="two", V1=0.4)) == ["busy"] == outcomes(rig.ask("push", V1=0.4))
     again = window(rig, V1=0.6)
@@ -111,9 +109,7 @@ def test_the_robot_is_its_learners_until_that_is_silent_or_leaves_it(rig: Rig) -
 
 
 @pytest.mark.parametrize("somebody_objects", [False, True])
-def test_a_robot_that_fell_steps_again_once_it_has_been_upright_and_nobody_objects(
-    rig: Rig, somebody_objects: bool
-) -> None:
+def test_a_robot_that_fell_steps_again_if_nobody_objects(rig: Rig, somebody_objects: bool) -> None:
     answers = window(rig, V1=0.5)
     rig.step(200, lies=True)
     assert outcomes(answers) == ["applied", "window"] and answers[1].fell and rig.supervisor.has_fallen
@@ -130,7 +126,7 @@ def test_a_robot_that_fell_steps_again_once_it_has_been_upright_and_nobody_objec
     assert outcomes(again)[-2:] == ["applied", "window"]
 
 
-def test_a_learner_that_has_gone_moves_no_robot_that_is_put_up_later(rig: Rig) -> None:
+def test_a_learner_that_has_gone_moves_no_robot_put_up_later(rig: Rig) -> None:
     window(rig, V1=0.5)
     rig.step(200, lies=True)
     again = window(rig, V1=0.5)
@@ -143,7 +139,7 @@ def test_a_learner_that_has_gone_moves_no_robot_that_is_put_up_later(rig: Rig) -
     assert outcomes(rig.ask("push", V1=0.4)) == ["applied"] and rig.supervisor.has_fallen
 
 
-def test_the_time_for_which_a_learner_waits_counts_from_when_it_asked_first(rig: Rig) -> None:
+def test_the_time_of_waiting_counts_from_the_first_request_on(rig: Rig) -> None:
     window(rig, V1=0.5)
     rig.step(200, lies=True)
     first = rig.ticks
@@ -160,7 +156,7 @@ class Lying:
     position, has_fallen = (0.0, 0.0, 0.9), True
 
 
-def test_a_robot_that_lies_is_measured_once_somebody_has_put_it_up(rig: Rig) -> None:
+def test_a_robot_that_lies_is_measured_once_it_is_put_up(rig: Rig) -> None:
     truth = Lying()
     rig.slot = Slot(DT, 1.0, Meter(PushedConfig(), truth))
     rig.step(110)
