@@ -75,7 +75,7 @@ LISTS: list[tuple[str, Any, str]] = [
 def test_bad_networks_deviations_and_actions(name, value, said):
     env = gym.make("Pendulum-v1")
     ends = value if name == "range" else ([-1, -1], [1, 1])
-    env.action_space = gym.spaces.Box(*np.float32(ends))
+    env.action_space = gym.spaces.Box(*np.array(ends, np.float32))
     policy_kwargs = {name: value} if name in ("net_arch", "squash_mu") else {}
     others = {name: value} if name == "exploration_std" else {}
     with pytest.raises(ValueError, match=said):

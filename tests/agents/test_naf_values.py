@@ -82,7 +82,7 @@ def test_the_bound_is_that_of_the_environment(tmp_path, monkeypatch):
     model.q_net.value_net[-1].bias.data.fill_(200.0)
     model.save(tmp_path / "agent")
     seen, env, rewards = model.watch, model.env, model.replay_buffer.rewards[:1020]
-    assert env is not None and seen.value_bound == pytest.approx(np.abs(rewards).max() / (1 - GAMMA), rel=1e-5) > 50
+    assert env is not None and seen.value_bound == pytest.approx(np.abs(rewards).max() / (1 - GAMMA), rel=1e-5)
     assert seen.value_ceiling == pytest.approx(rewards.max() / (1 - GAMMA), rel=1e-5)
     model.set_env(env)
     assert model.watch is seen
