@@ -10,7 +10,6 @@ settings.load_profile("any machine")
 
 @pytest.fixture(params=["pybullet", "mujoco"])
 def engine(request: pytest.FixtureRequest) -> str:
-    """Each engine that is installed, in turn."""
     from laboratory import need
 
     need(request.param)

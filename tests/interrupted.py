@@ -1,4 +1,4 @@
-"""Short trainings that are interrupted."""
+"""Short trainings, whole and interrupted."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -20,6 +20,13 @@ def interrupted_after(results: int) -> Callable[[], bool]:
     """Function that asks to stop after some results, those from the journal included."""
     countdown = iter(range(results))
     return lambda: next(countdown, None) is None
+
+
+def trained(path: Path, config: TrainingConfig) -> RunFolder:
+    """The run folder of a finished training."""
+    run = RunFolder.create(path, config)
+    train(config, run)
+    return run
 
 
 def begun(path: Path, config: TrainingConfig) -> RunFolder:

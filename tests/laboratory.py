@@ -69,7 +69,6 @@ class BulletLaboratory:
         simulation.look()
 
     def move_joint(self, simulation: Any, name: str, position: float, speed: float) -> None:
-        """Put a joint somewhere, in motion."""
         index = simulation.links[name]
         pybullet.resetJointState(
             simulation.body, index, position, targetVelocity=speed, physicsClientId=simulation.client
@@ -83,11 +82,9 @@ class BulletLaboratory:
             pybullet.setCollisionFilterPair(body, body, shank, foot, 0, simulation.client)
 
     def mass(self, simulation: Any, link: str) -> float:
-        """Of a link."""
         return float(self._dynamics(simulation, link)[0])
 
     def friction_under(self, simulation: Any, side: Side) -> set[float]:
-        """Of a foot's soles."""
         return {self._dynamics(simulation, f"{side}_{plate}")[1] for plate in PLATES}
 
     def touches_ground(self, simulation: Any, position: Sequence[float]) -> bool:
@@ -103,7 +100,6 @@ class BulletLaboratory:
         return any(contact[8] <= 0.0 for contact in contacts)
 
     def link_position(self, simulation: Any, link: str) -> np.ndarray:
-        """Of a link's frame, in the world's."""
         if link == "torso":
             return np.array(simulation.torso_state().position)
         return np.array(self._state(simulation, link)[4])
@@ -220,7 +216,6 @@ def laboratory(engine: str) -> Laboratory:
 
 
 def advance(simulation: Simulator, ticks: int) -> None:
-    """Let some control ticks pass."""
     for _ in range(ticks):
         simulation.advance()
 

@@ -25,7 +25,6 @@ KEPT = ("windows.csv", "parameters.json", "session.yaml", "journal.jsonl")
 
 
 def interrupted_after(windows: int) -> Callable[[], bool]:
-    """A function that asks to stop after some windows."""
     countdown = iter(range(windows - 1))
     return lambda: next(countdown, None) is None
 
@@ -56,7 +55,6 @@ class FormulaRobot(RobotInOperation):
 
     @property
     def falls(self) -> int:
-        """Number of falls."""
         return sum(window.fell for window in self.seen)
 
     def mean_reward(self, begin: float = 0.0, end: float = math.inf) -> float:

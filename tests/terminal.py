@@ -38,7 +38,6 @@ def run(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess
 
 
 def done(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:
-    """Run a command in this process, which has to succeed."""
     process = run(command, *arguments, cwd=cwd)
     assert process.returncode == 0, process.stderr
     return process
@@ -57,5 +56,4 @@ def _typed(words: list[str], folder: Path) -> Iterator[None]:
 
 
 def tree(folder: Path) -> dict[str, bytes]:
-    """Everything in a folder, with the content of the files."""
     return {str(path): path.read_bytes() if path.is_file() else b"" for path in sorted(folder.rglob("*"))}

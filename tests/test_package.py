@@ -26,25 +26,28 @@ import sarah
 assert before == (list(sys.meta_path), list(sys.path_hooks), sys.excepthook, __import__)
 import gymnasium
 print(*sorted(name for name in gymnasium.registry if name.startswith('Sarah')))
-slow = {'mujoco', 'pybullet', 'torch', 'stable_baselines3', 'matplotlib', 'sarah.episode.shipped'}
-print(*sorted(slow & set(sys.modules)))
 """
     process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    assert process.stdout.splitlines() == ["SarahBalance-v0 SarahEpisode-v0 SarahOperation-v0 SarahStepping-v0", ""]
+    assert process.stdout.split() == ["SarahBalance-v0", "SarahEpisode-v0", "SarahOperation-v0", "SarahStepping-v0"]
 
 
-def test_a_command_imports_nothing_slow_that_its_episodes_do_not_need() -> None:
-    """Importing yourdfpy, which brings scipy, takes longer than the episode; the robot is the default one."""
-    program = (
-        "import sys\n"
-        "from sarah.cli.eval import main\n"
-        "sys.argv = ['sarah-eval', 'stepping', '--episodes', '1', '--episode.time-limit', '2']\n"
-        "main()\n"
-        "slow = {'yourdfpy', 'scipy', 'torch', 'stable_baselines3', 'matplotlib', 'pandas', 'sklearn', 'distributed'}\n"
-        "sys.exit(' '.join(slow & set(sys.modules)) or 0)"
-    )
-    process = subprocess.run([sys.executable, "-c", program], cwd=ROOT, capture_output=True, text=True)
+COMMAND = "import sys\nfrom sarah.cli.{0} import main\nsys.argv = 'sarah-{0} {1}'.split()\nmain()"
+SLOW = {
+    "import sarah": "mujoco pybullet torch stable_baselines3 matplotlib sarah.episode.shipped",
+    # Importing yourdfpy, which brings scipy, takes longer than the episode; the robot is the default one
+    COMMAND.format("eval", "stepping --episodes 1 --episode.time-limit 2"): (
+        "yourdfpy scipy torch stable_baselines3 matplotlib pandas sklearn distributed"
+    ),
+    COMMAND.format("describe", ""): "pybullet mujoco torch",
+}
+
+
+@pytest.mark.parametrize("program", SLOW)
+def test_nothing_slow_is_loaded_without_need(program: str, tmp_path: Path) -> None:
+    check = f"{program}\nimport sys\nsys.exit(' '.join({set(SLOW[program].split())} & set(sys.modules)) or 0)"
+    process = subprocess.run([sys.executable, "-c", check], cwd=tmp_path, capture_output=True, text=True)
     assert process.returncode == 0, process.stderr
+    assert "describe" not in program or (tmp_path / "sarah_robot.png").stat().st_size > 50_000
 
 
 def test_no_module_imports_the_package_that_imports_it() -> None:

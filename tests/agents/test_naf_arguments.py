@@ -14,7 +14,9 @@ from stable_baselines3.common.utils import LinearSchedule
 from sarah.agents import NAF, LocalNAF
 
 SMALL = {"net_arch": [8]}
-BAD: list[tuple[type[NAF], str, list[Any]]] = [
+
+
+NUMBERS: list[tuple[type[NAF], str, list[Any]]] = [
     (NAF, "gamma", [math.nan, -0.1, 2.0]),
     (NAF, "tau", [-0.1, 2.0]),
     (NAF, "n_steps", [0, 1.5]),
@@ -27,7 +29,7 @@ BAD: list[tuple[type[NAF], str, list[Any]]] = [
     (NAF, "policy_kwargs min_curvature", [-1.0, math.nan]),
     (NAF, "policy_kwargs dropout", [-0.1, 1.0]),
 ]
-BAD += [
+NUMBERS += [
     (LocalNAF, "elite_share", [-0.1, 1.5]),
     (LocalNAF, "elite_std", [-0.1, math.inf]),
     (LocalNAF, "elite_draws", [0, 2.5, True]),
@@ -41,7 +43,8 @@ def refusal(name: str, value: object) -> str:
 
 
 @pytest.mark.parametrize(
-    ("algorithm", "name", "value"), [(algorithm, name, value) for algorithm, name, values in BAD for value in values]
+    ("algorithm", "name", "value"),
+    [(algorithm, name, value) for algorithm, name, values in NUMBERS for value in values],
 )
 def test_bad_numbers(algorithm, name, value):
     *outer, name = name.split()
@@ -49,6 +52,34 @@ def test_bad_numbers(algorithm, name, value):
     arguments |= {outer[0]: {**arguments.get(outer[0], {}), name: value}} if outer else {name: value}
     with pytest.raises(ValueError, match=refusal(name, value)):
         algorithm("MlpPolicy", "Pendulum-v1", **arguments)
+
+
+LISTS: list[tuple[str, Any, str]] = [
+    ("net_arch", [8, 0], refusal("a width in net_arch['W']", 0)),
+    ("net_arch", {"V": [8], "mu": [2.5], "L": []}, refusal("a width in net_arch['mu']", 2.5)),
+    ("net_arch", {"W": 8, "mu": [], "L": []}, r"^net_arch\['W'\] must be a list of widths, not 8$"),
+    ("net_arch", "64, 64", r"^net_arch must be a list of widths or a dict of lists, not '64, 64'$"),
+    ("net_arch", dict(pi=[4]), r"W or V, mu and L and perhaps shared, not \['pi'\]$"),
+    ("net_arch", dict(V=[4], W=[4], mu=[4], L=[4]), r"not \['L', 'V', 'W', 'mu'\]$"),
+    ("squash_mu", "no", r"^squash_mu must be True or False, not 'no'$"),
+    ("exploration_std", [0.1] * 3, r"^exploration_std must be one number, or .* has: \(2,\), not \(3,\)$"),
+    ("exploration_std", np.array([0.1, -0.1]), r"^each of exploration_std must be a number from 0, not -0\.1$"),
+    ("exploration_std", LinearSchedule(-0.1, 0.5, 0.5), refusal("exploration_std(1)", -0.1)),
+    ("exploration_std", LinearSchedule(0.5, -0.1, 0.5), refusal("exploration_std(0)", -0.1)),
+    ("range", ([-2, 1], [2, 1]), r"^every action must have a range, .* are \[-2.0, 1.0\], the highest \[2.0, 1.0\]$"),
+    ("range", ([-3e38], [3e38]), r"^the range of every action must be finite, not \[-3\S+\] to \[3\S+\]$"),
+]
+
+
+@pytest.mark.parametrize(("name", "value", "said"), LISTS)
+def test_bad_networks_deviations_and_actions(name, value, said):
+    env = gym.make("Pendulum-v1")
+    ends = value if name == "range" else ([-1, -1], [1, 1])
+    env.action_space = gym.spaces.Box(*np.array(ends, np.float32))
+    policy_kwargs = {name: value} if name in ("net_arch", "squash_mu") else {}
+    others = {name: value} if name == "exploration_std" else {}
+    with pytest.raises(ValueError, match=said):
+        NAF("MlpPolicy", env, policy_kwargs=policy_kwargs, **others)
 
 
 UNKNOWN: list[tuple[type[NAF], dict[str, Any], str, str]] = [
@@ -74,28 +105,6 @@ def test_an_unknown_argument_gets_the_nearest_or_its_place(algorithm, arguments,
         algorithm("MlpPolicy", "Pendulum-v1", **arguments)
 
 
-@pytest.mark.parametrize(
-    ("name", "value", "said"),
-    [
-        ("net_arch", [8, 0], refusal("a width in net_arch['W']", 0)),
-        ("net_arch", {"V": [8], "mu": [2.5], "L": []}, refusal("a width in net_arch['mu']", 2.5)),
-        ("net_arch", {"W": 8, "mu": [], "L": []}, r"^net_arch\['W'\] must be a list of widths, not 8$"),
-        ("net_arch", "64, 64", r"^net_arch must be a list of widths or a dict of lists, not '64, 64'$"),
-        ("squash_mu", "no", r"^squash_mu must be True or False, not 'no'$"),
-    ],
-)
-def test_bad_arguments_of_the_policy(name, value, said):
-    with pytest.raises(ValueError, match=said):
-        NAF("MlpPolicy", "Pendulum-v1", policy_kwargs={name: value})
-
-
-@pytest.mark.parametrize("ends", [(-0.1, 0.5), (0.5, 2.0)])
-def test_schedules_are_judged_by_their_ends(ends):
-    end, value = (1, ends[0]) if ends[0] < 0 else (0, ends[1])
-    with pytest.raises(ValueError, match=refusal(f"elite_share({end})", value)):
-        LocalNAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL, elite_share=LinearSchedule(ends[0], ends[1], 0.5))
-
-
 def test_ends_of_the_ranges_are_allowed():
     elite: Any = dict(elite_share=np.float32(1.0), elite_std=0.0, elite_draws=np.int64(1))
     policy: Any = dict(policy_kwargs={**SMALL, "min_curvature": 0}, replay_buffer_kwargs={"temperature": 0})
@@ -104,61 +113,18 @@ def test_ends_of_the_ranges_are_allowed():
     assert [schedule(0.5) for schedule in schedules] == [1.0, 0.0, 0.0]
 
 
-@pytest.mark.parametrize(
-    ("value", "said"),
-    [
-        ([0.1, 0.2, 0.3], r"exploration_std must be one number, or as many as an action has: \(2,\), not \(3,\)"),
-        (np.array([0.1, -0.1]), r"each of exploration_std must be a number from 0, not -0\.1"),
-    ],
-)
-def test_bad_deviations_by_dimension(value, said):
-    env = gym.make("Pendulum-v1")
-    env.action_space = gym.spaces.Box(-1, 1, (2,))
-    with pytest.raises(ValueError, match=f"^{said}$"):
-        NAF("MlpPolicy", env, exploration_std=value)
-
-
-def test_the_signature_of_local_naf_shows_those_of_naf_in_their_order():
+def test_local_naf_has_the_arguments_of_naf_in_their_order():
     own, others = (list(signature(kind).parameters.items()) for kind in (LocalNAF, NAF))
     differ = {mine[0]: mine[1].default for mine, other in zip(own, others, strict=False) if mine != other}
     assert differ.keys() == {"gamma", "replay_buffer_class"} and differ["gamma"] == 0.0
     assert [name[:5] for name, _ in own[len(others) :]] == ["elite", "elite", "elite", "first"]
 
 
-@pytest.mark.parametrize(
-    ("low", "high", "said"),
-    [
-        (
-            [-2, 1],
-            [2, 1],
-            r"every action must have a range, but the lowest are \[-2.0, 1.0\], the highest \[2.0, 1.0\]",
-        ),
-        ([-3e38], [3e38], r"the range of every action must be finite, not \[-3\S+\] to \[3\S+\]"),
-    ],
-)
-def test_actions_without_a_finite_range_are_refused(low, high, said):
-    env = gym.make("Pendulum-v1")
-    env.action_space = gym.spaces.Box(np.float32(low), np.float32(high))
-    with pytest.raises(ValueError, match=f"^{said}$"):
-        NAF("MlpPolicy", env)
-
-
-class OneReward(gym.RewardWrapper):
-    """A reward in the place of every tenth one."""
-
-    def __init__(self, value: float):
-        super().__init__(gym.make("Pendulum-v1"))
-        self.value, self.steps = value, 0
-
-    def reward(self, reward):
-        self.steps += 1
-        return self.value if self.steps % 10 == 0 else reward
-
-
 @pytest.mark.parametrize("value", [math.nan, 1e30])
 def test_rewards_that_ruin_the_networks_end_the_training(value):
+    env = gym.wrappers.TransformReward(gym.make("Pendulum-v1"), lambda _: value)
     with pytest.raises(ValueError, match=r"^the loss is (nan|inf), and the agent is lost: .* VecCheckNan"):
-        NAF("MlpPolicy", OneReward(value), learning_starts=30, policy_kwargs=SMALL, seed=0).learn(50)
+        NAF("MlpPolicy", env, learning_starts=30, policy_kwargs=SMALL, seed=0).learn(50)
 
 
 def test_a_loaded_agent_is_judged_and_knows_no_best_action_yet(tmp_path):
@@ -166,6 +132,8 @@ def test_a_loaded_agent_is_judged_and_knows_no_best_action_yet(tmp_path):
     model.save(tmp_path / "naf")
     with pytest.raises(ValueError, match=refusal("elite_draws", 0)):
         LocalNAF.load(tmp_path / "naf", elite_draws=0)
+    with pytest.raises(ValueError, match=refusal("elite_share(0)", 2.0)):
+        LocalNAF.load(tmp_path / "naf", elite_share=LinearSchedule(0.5, 2.0, 0.5))
     with pytest.raises(ValueError, match=r"^the replay buffer is empty, so there is no best action"):
         LocalNAF.load(tmp_path / "naf", env=model.get_env()).replay_buffer.best_action()
     NAF("MlpPolicy", "Pendulum-v1", policy_kwargs=SMALL).save(tmp_path / "plain")

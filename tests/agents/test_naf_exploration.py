@@ -54,34 +54,26 @@ def test_noise_has_its_standard_deviation():
     np.testing.assert_array_equal(explore(20, exploration_std=0.0), 0.0)
 
 
-def test_schedule():
-    actions = explore(800, exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.5))
-    np.testing.assert_allclose(actions[:100].std(), 0.27, rtol=0.15)
-    np.testing.assert_allclose(actions[400:].std(), 0.05, rtol=0.08)
+DEVIATIONS = [
+    (np.array([0.3, 0.1]), [(0, 800, [0.3, 0.1])]),
+    (LinearSchedule(0.3, 0.05, end_fraction=0.5), [(0, 100, [0.28] * 2), (400, 800, [0.05] * 2)]),
+    ("lin_0.3", [(0, 100, [0.28] * 2), (350, 450, [0.15] * 2), (799, 800, [0.0] * 2)]),  # the text of RL Zoo
+]
 
 
-def test_each_dimension_can_have_its_deviation():
-    actions = explore(1000, exploration_std=np.array([0.3, 0.1]))
-    np.testing.assert_allclose(actions.std(axis=0), [[0.3, 0.1]], rtol=0.1)
+@pytest.mark.parametrize(("std", "parts"), DEVIATIONS)
+def test_they_can_differ_between_dimensions_and_in_time(std, parts):
+    actions = explore(800, exploration_std=std)
+    for begin, end, expected in parts:
+        np.testing.assert_allclose(actions[begin:end].std(axis=(0, 1)), expected, rtol=0.15, atol=0.002)
 
 
-def test_the_text_of_rl_zoo_is_a_schedule_that_ends_at_0():
-    actions = explore(800, exploration_std="lin_0.3")
-    np.testing.assert_allclose([actions[:100].std(), actions[350:450].std()], [0.28, 0.15], rtol=0.15)
-    assert np.abs(actions[-1]).max() < 0.002
-
-
-def test_given_action_noise_takes_precedence():
-    noise = NormalActionNoise(np.array([0.5, -0.5]), np.zeros(2))
-    actions = explore(10, n_envs=2, action_noise=noise, exploration_std=0.3)
-    np.testing.assert_allclose(actions, np.broadcast_to([0.5, -0.5], actions.shape), atol=1e-6)
-
-
-def test_given_action_noise_moves_warm_up_actions_too():
+def test_given_action_noise_takes_precedence_in_the_warm_up_too():
     """As in TD3: where it is 2, every action ends at a bound."""
-    noise = NormalActionNoise(np.array([2.0, -2.0]), np.zeros(2))
-    actions = explore(10, action_noise=noise, learning_starts=5)
-    np.testing.assert_array_equal(actions, np.broadcast_to([1.0, -1.0], actions.shape))
+    for mean, learning_starts, expected in ((0.5, 0, 0.5), (2.0, 5, 1.0)):
+        noise = NormalActionNoise(np.array([mean, -mean]), np.zeros(2))
+        actions = explore(10, 2, action_noise=noise, exploration_std=0.3, learning_starts=learning_starts)
+        np.testing.assert_allclose(actions, np.broadcast_to([expected, -expected], actions.shape), atol=1e-6)
 
 
 @pytest.mark.parametrize("algorithm", [NAF, LocalNAF])
@@ -137,10 +129,12 @@ def test_elite_actions_follow_the_best_of_the_replay_buffer():
     assert np.abs(warm_up - after).sum(axis=1).min() < 1e-6  # one of those that have been tried
 
 
-def test_elite_draws_follow_their_schedule():
+def test_elite_draws_follow_their_schedule_others_keep_to_mu():
     _, after = elite_actions(200, elite_share=1.0, elite_std=LinearSchedule(0.3, 0.02, end_fraction=0.5))
     spread = np.abs(np.diff(after, axis=0))
     assert spread[:40].mean() > 5 * spread[120:].mean()
+    _, after = elite_actions(400, elite_share=0.7, elite_std=0.01)
+    assert np.mean(np.abs(after).sum(axis=1) == 0.0) == pytest.approx(0.3, abs=0.06)
 
 
 def test_of_many_draws_the_most_promising_is_tried():
@@ -150,11 +144,6 @@ def test_of_many_draws_the_most_promising_is_tried():
         for draws in (1, 16)
     }
     assert distances[16] < 0.6 * distances[1]
-
-
-def test_the_other_actions_keep_to_mu():
-    _, after = elite_actions(400, elite_share=0.7, elite_std=0.01)
-    assert np.mean(np.abs(after).sum(axis=1) == 0.0) == pytest.approx(0.3, abs=0.06)
 
 
 def test_elite_actions_need_a_buffer_that_knows_the_best():

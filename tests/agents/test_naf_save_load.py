@@ -44,16 +44,6 @@ def test_save_load(tmp_path):
     assert loaded.num_timesteps == 70 and updates(loaded) == updates(model) + 30
 
 
-def test_save_load_of_local_naf(tmp_path):
-    std = LinearSchedule(0.4, 0.2, 0.5)
-    model = make_model(LocalNAF, elite_share=0.3, elite_std=std, elite_draws=4, first_action_centre=True).learn(30)
-    model.save(tmp_path / "model")
-    loaded = LocalNAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
-    assert (loaded.elite_draws, loaded.first_action_centre) == (4, True)
-    assert loaded.elite_share_schedule(0.5) == 0.3 and loaded.elite_std_schedule(0.75) == pytest.approx(0.3)
-    assert loaded.learn(30, reset_num_timesteps=False).num_timesteps == 60
-
-
 def test_arguments_and_environments_can_change_at_load(tmp_path):
     model = make_model().learn(30)
     model.save(tmp_path / "model")

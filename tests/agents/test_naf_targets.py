@@ -111,20 +111,15 @@ def test_target_network_starts_as_a_copy():
         assert th.equal(target, online) and target.data_ptr() != online.data_ptr()
 
 
-def test_an_update_samples_100_transitions_unless_told_otherwise():
+def test_no_update_changes_nothing_and_each_samples_100():
     model = make_model(Corridor()).learn(30)
-    batches = remembered(model)
-    model.train(1)
-    model.train(2, 16)
-    assert [len(batch.rewards) for batch in batches] == [100, 16, 16]
-
-
-def test_no_update_changes_and_logs_nothing():
-    model = make_model(Corridor()).learn(30)
-    weights = model.policy.parameters_to_vector()
+    batches, weights = remembered(model), model.policy.parameters_to_vector()
     model.train(0)
     np.testing.assert_array_equal(model.policy.parameters_to_vector(), weights)
     assert "train/loss" not in model.logger.name_to_value
+    model.train(1)
+    model.train(2, 16)
+    assert [len(batch.rewards) for batch in batches] == [100, 16, 16]
 
 
 @pytest.mark.parametrize(("norm", "is_clipped"), [(None, False), (1e-4, True)])

@@ -25,7 +25,11 @@ from sarah.agents.naf_warnings import Watch, reward_warning, value_warning
     ],
 )
 def test_rewards_are_far_by_their_deviation_large_by_its_size(mean, std, said):
-    text = reward_warning(mean + std * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0], np.float32))
+    rewards = mean + std * np.array([-1.0, 1.0, -1.0, 1.0, -1.0, 1.0], np.float32)
+    text = reward_warning(rewards)
+    with np.errstate(all="raise"):  # nothing is said of what is no number, and of a few
+        assert reward_warning(np.append(rewards, np.float32(np.inf))) is None
+    assert reward_warning(rewards[:4]) is None and (reward_warning(rewards[:5]) is None) == (text is None)
     assert text is None if said is None else re.search(said, text or "")
 
 
@@ -47,18 +51,25 @@ def test_rewards_are_judged_once_when_they_are_enough(count, warm_up, is_full, a
     assert said == [are_judged, False] and watch.judged_rewards == are_judged
 
 
-@pytest.mark.filterwarnings("error")
-def test_a_few_rewards_and_what_is_no_number_say_nothing():
-    assert reward_warning(np.full(4, -100.0)) is None
-    assert reward_warning(np.full(5, -100.0)) is not None
-    assert reward_warning(np.array([0.0, 0.0, 0.0, 0.0, np.inf], np.float32)) is None
-
-
 def test_the_remedy_of_values_that_run_away_is_one_that_is_left():
     remedies = {(100.0, True): "wider exploration_std or a lower", (100.0, False): "for W", (0.5, True): "rewards up"}
     for (bound, has_w), remedy in remedies.items():
         text = value_warning(largest=2.5 * bound, ceiling=bound, bound=bound, gamma=0.99, has_w=has_w)
         assert remedy in text and "by 1.5 times" in text
+
+
+def test_v_is_judged_by_rewards_and_said_to_run_away_once():
+    """Where all rewards are negative no value is above 0, as an episode may end."""
+    fresh, watch = Watch(), Watch(updates=1001)
+    assert Watch().judge_value(9.0, (0.0, 0.0), 0.99, True) == (None, None)
+    assert fresh.judge_value(50.0, (-100.0, -10.0), 0.99, True) == (1.5, None)
+    assert fresh.judge_value(1000.0, (0.0, 0.0), 0.99, True) == (11.0, None)  # networks are still fresh
+    assert watch.judge_value(150.0, (-40.0, 100.0), 0.99, True) == (1.5, None)
+    ratio, said = watch.judge_value(1060.0, (0.0, 50.0), 0.99, False)
+    assert ratio == 10.6 and re.search(
+        r"^V of 1\.06e\+03 is beyond .*: it runs away\. Remedy: .* layers for W", said or ""
+    )
+    assert watch.judge_value(1060.0, (0.0, 50.0), 0.99, False) == (10.6, None)
 
 
 class SlowSGD(th.optim.SGD):
@@ -99,14 +110,9 @@ SMALL_WEIGHTS = (100, 100)
         (2, 1.0, (10, 10, 3, 3), False),  # of images: each weight is used many times
     ],
 )
-def test_threads_are_blamed_only_where_they_wait(monkeypatch, threads, seconds, shape, is_said):
+def test_threads_are_blamed_once_where_they_wait(monkeypatch, threads, seconds, shape, is_said):
     monkeypatch.setattr(th, "get_num_threads", lambda: threads)
-    text = Watch().judge_time(seconds, 10, [th.zeros(shape)], batch_size=256)
-    assert (text is not None) == is_said
-
-
-def test_very_slow_updates_are_said_after_the_first_ones(monkeypatch):
-    monkeypatch.setattr(th, "get_num_threads", lambda: 2)
-    watch, weights = Watch(), [th.zeros(SMALL_WEIGHTS)]
-    said = [watch.judge_time(0.3, 1, weights, batch_size=256) is not None for _ in range(5)]
-    assert said == [False, True, False, False, False]
+    weights, watch = [th.zeros(shape)], Watch()
+    assert (Watch().judge_time(seconds, 10, weights, batch_size=256) is not None) == is_said
+    said = [watch.judge_time(0.3 * seconds, 1, weights, batch_size=256) is not None for _ in range(4)]
+    assert said == [False, is_said, False, False]  # very slow ones before ten are made

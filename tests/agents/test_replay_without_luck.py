@@ -14,7 +14,7 @@ from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import VecNormalize
 
-from sarah.agents import LocalNAF, RankReplayBuffer, buffers
+from sarah.agents import LocalNAF, RankReplayBuffer
 from sarah.agents.corrections import FEWEST_EPISODES, MOST_FITTED, PENALTY, bounded, corrected
 
 BOX = spaces.Box(-1, 1, (2,))
@@ -103,20 +103,6 @@ def test_rewards_are_corrected_before_they_are_normalised() -> None:
     np.testing.assert_allclose(buffer.sample(50, env).rewards, plain.rewards / 2, rtol=1e-6)
 
 
-def test_a_correction_is_made_once_after_an_addition(monkeypatch: pytest.MonkeyPatch) -> None:
-    calls: Any = []
-    monkeypatch.setattr(buffers, "corrected", lambda *args: calls.append(len(args[0])) or corrected(*args))
-    buffer = played(30)
-    for _ in range(3):
-        buffer.sample(4)
-        buffer.best_action()
-        buffer.draw_near_best(0.1, 4)
-    assert calls == [30]
-    add(buffer, 30, (0, 0), 1.0, disturbances=[0.0, 0.0])
-    buffer.best_action()
-    assert calls == [30, 31]
-
-
 AS_BEFORE = "a list of finite numbers as in the episodes before, 2 of them, not"
 ALWAYS = "there in every episode or in none"
 
@@ -171,13 +157,6 @@ def drawn(seed: int, number: int = 60, width: int = 3) -> tuple[np.ndarray, np.n
     first, second, third = disturbances.T[:3]
     returns = 2.0 + (first + 1.0) * (second + 1.0) - third**2 + rng.normal(size=number)
     return returns, disturbances
-
-
-def test_a_disturbance_of_two_values_by_hand() -> None:
-    """Its square is constant, so one weight is left: n / (n + penalty) of the true one."""
-    side = np.resize([1.0, -1.0], 40)
-    without = corrected(7.0 + 3.0 * side, 5.0 + 0.1 * side[:, None])
-    np.testing.assert_allclose(without, 7.0 + 3.0 * side * PENALTY / (40 + PENALTY), rtol=1e-12)
 
 
 @pytest.mark.parametrize("seed", range(5))

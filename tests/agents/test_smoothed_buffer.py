@@ -131,25 +131,24 @@ def test_units_of_the_reward_make_no_difference(scale: float, shift: float) -> N
     assert other.best() == pytest.approx(process.best(), abs=1e-6)
 
 
-@pytest.mark.parametrize(("noise", "believed"), [(0.02, min(NOISES)), (0.5, max(NOISES))])
-def test_noise_is_recognised(noise: float, believed: float) -> None:
+@pytest.mark.parametrize(
+    ("noise", "waves", "part", "believed"),
+    [(0.02, 0, 1, min(NOISES)), (0.5, 0, 1, max(NOISES)), (0.0, 8, 0, LENGTHS[1]), (0.0, 2, 0, LENGTHS[0])],
+)
+def test_noise_and_a_fine_landscape_are_recognised(noise: float, waves: int, part: int, believed: float) -> None:
     rng = np.random.default_rng(0)
     actions = rng.uniform(-1, 1, (200, 2))
-    rewards = np.exp(-2 * (actions**2).sum(axis=1)) + rng.normal(0, noise, 200)
-    assert GaussianProcess(actions, rewards).kernel[1] == believed
+    landscape = np.sin(waves * actions[:, 0]) if waves else np.exp(-2 * (actions**2).sum(axis=1))
+    assert GaussianProcess(actions, landscape + rng.normal(0, noise, 200)).kernel[part] == believed
 
 
-def test_a_fine_landscape_is_recognised() -> None:
-    actions = np.random.default_rng(0).uniform(-1, 1, (200, 2))
-    assert GaussianProcess(actions, np.sin(8 * actions[:, 0])).kernel[0] == LENGTHS[1]
-    assert GaussianProcess(actions, np.sin(2 * actions[:, 0])).kernel[0] == LENGTHS[0]
-
-
-def test_a_few_episodes_choose_no_kernel() -> None:
+def test_a_few_episodes_choose_no_kernel_but_a_length() -> None:
     actions = np.linspace(-1, 1, 9)[:, None]
     assert GaussianProcess(actions, np.sin(9 * actions[:, 0])).kernel == (LENGTHS[0], NOISES[0])
     nothing = GaussianProcess(np.empty((0, 2)), np.empty(0))
     assert nothing.best(np.array([[0.1, 0.2], [0.3, 0.4]])).tolist() == [0.1, 0.2]
+    lengths = [GaussianProcess(np.zeros((5, dim)), np.zeros(5)).kernel[0] for dim in (1, 4, 16)]
+    assert lengths == [LENGTHS[0], LENGTHS[0], 2 * LENGTHS[0]]
 
 
 @pytest.mark.parametrize("top", [(0.3, -0.2), (1.0, 0.4)])
@@ -173,11 +172,6 @@ def test_how_deep_a_few_disasters_are_makes_no_difference() -> None:
     bad[::20], worse[::20] = -20.0, -1000.0
     best, other = (GaussianProcess(actions, each).best() for each in (bad, worse))
     assert best.tolist() == other.tolist() and np.linalg.norm(best) < 0.7
-
-
-def test_lengths_grow_with_the_distances_in_a_large_box() -> None:
-    few = [GaussianProcess(np.zeros((5, dim)), np.zeros(5)).kernel[0] for dim in (1, 4, 16)]
-    assert few == [LENGTHS[0], LENGTHS[0], 2 * LENGTHS[0]]
 
 
 def test_the_newest_episodes_decide() -> None:

@@ -1,15 +1,13 @@
 """``sarah-describe``, as a user runs it."""
 
 import re
-import subprocess
-import sys
 from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from laboratory import need
 from pytest import MonkeyPatch
-from terminal import Answer, Trained, done, run
+from terminal import Trained, done, run
 
 from sarah.cli.describe_text import lines_of
 from sarah.episode.settings import EpisodeConfig
@@ -23,7 +21,7 @@ def undrawn(monkeypatch: MonkeyPatch) -> None:
     monkeypatch.setattr("sarah.pictures.dimension_figure.draw_dimensions", lambda *_: None)
 
 
-def test_a_robot_of_other_dimensions_is_drawn_and_other_tools_load_its_urdf(tmp_path: Path) -> None:
+def test_another_robot_is_drawn_and_other_tools_load_its_urdf(tmp_path: Path) -> None:
     process = run("sarah-describe", *DIMENSIONS, "--out", "other", cwd=tmp_path)
     said = "to train it:  sarah-train --episode.dimensions thigh_length 0.2 shank_length 0.25\n"
     assert process.returncode == 0 and re.sub(r":  \S*/sarah", ":  sarah", process.stderr) == said
@@ -48,7 +46,7 @@ def test_the_robot_of_a_training_is_not_trained_again(trained: Trained, undrawn:
     assert "standing height  0.84 m" in process.stdout and process.stderr == ""
 
 
-def test_it_says_what_follows_from_length_and_mass_and_what_was_set_by_hand() -> None:
+def test_it_says_what_follows_from_size_and_what_was_set_by_hand() -> None:
     usual = EpisodeConfig()
     config = usual.for_robot({"torso_mass": 38.0})
     config = replace(config, controller=replace(config.controller, pad_threshold=40.0, largest_blow=50.0))
@@ -61,16 +59,6 @@ def test_it_says_what_follows_from_length_and_mass_and_what_was_set_by_hand() ->
     assert "default" not in plain
 
 
-def test_it_needs_neither_an_engine_nor_a_learner(tmp_path: Path) -> None:
-    program = (
-        "import sys\nfrom sarah.cli.describe import main\nsys.argv = ['sarah-describe']\nmain()\n"
-        "sys.exit(' '.join({'pybullet', 'mujoco', 'torch'} & set(sys.modules)) or 0)"
-    )
-    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path)
-    assert process.returncode == 0, process.stderr
-    assert (tmp_path / "sarah_robot.png").stat().st_size > 50_000
-
-
 @pytest.mark.parametrize("newtons", [5, 30])
 def test_a_file_and_options_describe_one_robot(newtons: int, undrawn: None, tmp_path: Path) -> None:
     controller = f"{{pad_threshold: {newtons}}}"
@@ -80,8 +68,3 @@ def test_a_file_and_options_describe_one_robot(newtons: int, undrawn: None, tmp_
     for row in ("thigh_length +0.2 ", "torso_mass +23 ", "shank_length +0.25 "):
         assert re.search(f"\n{row}", process.stdout)
     assert re.search(rf"controller.pad-threshold +{newtons} +30 +the rule gives 45\n", process.stdout)
-
-
-def test_a_file_or_a_subject(answer: Answer, tmp_path: Path) -> None:
-    (tmp_path / "mine.yaml").write_text("episodes: 5\n")
-    assert "give --config or a subject, not both" in answer("sarah-describe balance --config mine.yaml")

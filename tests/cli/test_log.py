@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from hand_made import rocking
 from logged import NAMED, TARGETS, write
-from terminal import COARSE, Answer, done, run
+from terminal import COARSE, done, run
 
 from sarah.episode.trace import Trace
 from sarah.logs.reading import Log
@@ -41,7 +41,7 @@ def test_a_summary_says_what_was_logged(folder: Path) -> None:
     assert lines[-len(rest) :] == rest
 
 
-def test_a_check_tells_a_whole_log_from_one_that_is_cut_or_has_gaps(folder: Path) -> None:
+def test_a_check_tells_a_whole_log_from_a_cut_one_or_gaps(folder: Path) -> None:
     content = (folder / "a.mcap").read_bytes()
     (folder / "cut.mcap").write_bytes(content[: len(content) // 2])
     (folder / "begun.mcap").write_bytes(content[:100])
@@ -79,28 +79,6 @@ def test_a_topic_becomes_a_table_with_a_column_for_each_field(folder: Path) -> N
         applied, refused = csv.DictReader(file)
     assert [float(applied[name]) for name in NAMED] == list(NAMED.values())
     assert (refused["P1"], refused["P2"], refused["accepted"]) == ("9.0", "", "False")
-
-
-MISTAKES = {
-    "": "give at least one log",
-    "nowhere.mcap": "cannot read nowhere.mcap: No such file or directory",
-    ".": "cannot read .: it is not a regular file",
-    "page.html": "page.html is not an MCAP file",
-    "a.mcap --chek": "did you mean --check?",
-    "a.mcap --cut 1 2": "--cut and --out belong together: --cut BEGIN END --out FILE",
-    "a.mcap --cut 2 1 --out b.mcap": "cut must be two times in rising order, not (2.0, 1.0)",
-    "a.mcap --cut 2 3 --out b.mcap": "a.mcap has no message from 2 to 3 s",
-    "a.mcap --cut 0 1 --out a.mcap": "a.mcap is there already: name another file for the log",
-    "a.mcap a.mcap --csv tables": "--csv takes one log, not 2",
-    "a.mcap --check --csv tables": "give --check or --csv, not both",
-    "a.mcap --csv page.html": "cannot write folder page.html: File exists",
-}
-
-
-def test_a_mistake_is_one_line(folder: Path, answer: Answer) -> None:
-    (folder / "page.html").write_text("<html>")
-    for line, words in MISTAKES.items():
-        assert words in answer(f"sarah-log {line}"), line
 
 
 def test_what_a_file_says_cannot_steer_the_terminal(folder: Path) -> None:

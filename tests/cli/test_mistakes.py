@@ -6,10 +6,14 @@ from pathlib import Path
 
 import pytest
 from laboratory import need
+from logged import write
 from pytest import CaptureFixture, MonkeyPatch
 from terminal import BIN, Answer
 
 from sarah.cli.options import as_command
+from sarah.episode.settings import EpisodeConfig
+from sarah.runs.config import TrainingConfig
+from sarah.runs.run_folder import RunFolder
 
 GIVEN, PUSHED = "1,1,1,1,1", "1,0,1,0"
 PUSH_AT = "--episode.push.newtons 80 --episode.push.at-seconds"
@@ -21,9 +25,10 @@ MISTAKES = {
         ("--episode 5", "did you mean --episodes?"),
         ("balance", "'balance' is no option: a task is given as --task balance"),
         ("--task", "--task"),
-        ("--simulations 10.5", "--episodes must be a whole number, not '10.5'"),
+        ("--task my_task.py:THIFTY", "unknown task in my_task.py 'THIFTY', did you mean 'THRIFTY'?"),
+        ("--task my_task.py", "name the task in my_task.py too, as in my_task.py:TASK"),
+        ("--task nowhere.py:JUMP", "cannot read nowhere.py: No such file or directory"),
         ("--out x --simulations=0", "episodes must be between 1 and 1000000, not 0"),
-        ("--episode.time-limit nan", "--episode.time-limit must be a number, not 'nan'"),
         ("--episode.dimensions thigh_length", "must be names and numbers in turn, and 'thigh_length' has no number"),
         ("--task balance --episode.push.newtons", "--episode.push.newtons must be one number, or two for a range"),
         ("--task balance --episode.push.newtons 50 20", "between 0 and 10000 N and in rising order"),
@@ -52,7 +57,6 @@ MISTAKES = {
         ("--out race --algorithms", "algorithms"),
         ("--out race --algorithms naf naf", "algorithms must be different ones"),
         ("--out race --algorithms naf tpee", "unknown algo 'tpee', did you mean 'tpe'?"),
-        ("--out race --best-known nan", "--best-known must be a number, not 'nan'"),
         ("--out race --best-known 3", "best-known must be between 0.01 and 2, not 3.0"),
         ("--out race --evaluations 0", "evaluations must be between 1 and 1000, not 0"),
         ("--out race --evaluations 9 --evaluations-along 10", "evaluations-along must be between 1 and 9, not 10"),
@@ -63,15 +67,14 @@ MISTAKES = {
         ("steping", "did you mean 'stepping'?"),
         ("--task stepping", "'balance' are parameters of task 'balance': give others, or leave --task out"),
         (f"full {GIVEN}", "Unrecognized options: 1,1,1,1,1"),
+        ("1,0,1,0 --task my_task.py:THRIFTY", "must be 5 numbers (P1 to P5), not 4"),
         ("1;1;1;1;1", "parameters must be numbers separated by commas, not '1;1;1;1;1'"),
         (f"{GIVEN} --episodes 0", "episodes must be between 1 and 1000000, not 0"),
         (f"{GIVEN} --first-seed -1", "first_seed must be between 0 and 4294967295, not -1"),
-        (f"{GIVEN} --physics refrence", "unknown physics 'refrence', did you mean 'reference'?"),
         (f"{GIVEN} --engine mujoco --episode.engine=pybullet", "--engine and --episode.engine set the same"),
         (f"stepping --episode.time-limit 3 {PUSH_AT} 5", "must begin before the time_limit of 3 s"),
         ("--episode.push.newtons 100,125", "must be one number, or two for a range, not 100,125"),
         (f"{GIVEN} --episode.terrain.roughness 0 0.01 0.02", "or two for a range, not 0 0.01 0.02"),
-        (f"{GIVEN} --episode.reward-form symetric", "did you mean 'symmetric'? (allowed: printed, symmetric)"),
         ("--no-randomisation --episode.randomisation.friction 1", "leaves --episode.randomisation.friction without"),
         ("--terrain", "--terrain needs a folder for table and picture: --out DIR"),
         ("--out x", "--out is the folder of --robustness or --terrain: give one of them"),
@@ -90,6 +93,7 @@ MISTAKES = {
     "sarah-describe": [
         ("--episode.dimensions tigh_length 0.3", "did you mean 'thigh_length'"),
         ("nobody", "'nobody' is neither a run folder, nor numbers"),
+        ("balance --config mine/config.yaml", "give --config or a subject, not both"),
     ],
     "sarah-figures": [
         ("", "give at least one run folder"),
@@ -103,7 +107,6 @@ MISTAKES = {
     ],
     "sarah-video": [
         ("", "give a run folder, numbers or a name, and the file to write"),
-        ("full", "give a run folder, numbers or a name, and the file to write"),
         ("full --out a.gif", "full is not the folder of a training"),
         (f"{GIVEN} --out nowhere/out.mp4", "folder nowhere does not exist"),
         (f"{GIVEN} --out a.gif --which best", "--which is for a run folder"),
@@ -122,35 +125,101 @@ MISTAKES = {
     "sarah-operate": [
         ("--push-seconds 0.5 --episode.push.duration 5", "push.duration must be at most the 0.5 s"),
         ("--change 5", 'change must be a minute and a setting, such as "5: '),
-        ("--change '5: payload'", 'change must be a minute and a setting, such as "5: '),
-        ("--change 'x: payload=3'", 'change must be a minute and a setting, such as "5: '),
         ("--change '5: pay_load=3'", "unknown key 'pay_load', did you mean 'payload'?"),
         ("--episode.time_limit 5", "--episode.time_limit has no effect in an operation"),
         ("--episode.push.at-seconds=2", "has no effect in an operation: leave it out"),
+        ("--gone-seconds 5", "it needs --robot"),
         ("--learner none --compare-frozen", "--compare-frozen is for a session that learns"),
         ("--resume nowhere --seed 3", "leave '--seed' out"),
+    ],
+    "sarah-push": [
+        ("", "give one of parameters, --stand, --step and --state"),
+        ("0.4,1.3", "parameters must be 5 numbers (P1 to P5), 4 (V1 to V4) or 9, not 2"),
+        ("0.4,x", "parameters must be numbers separated by commas, not '0.4,x'"),
+        ("3,0,0,0", "parameter V1 must be between -2 and 2, not 3.0"),
+        ("--state --to tcp/127.0.0.1:9", "no robot listens at tcp/127.0.0.1:9"),
+        ("--state --to tls/127.0.0.1:9 --key me.key", "give --authority, --certificate and --key"),
+    ],
+    "sarah-robot": [
+        ("balance --fault 'one pad: 1 N'", "unknown fault 'one pad: 1 N', did you mean 'one pad: 0 N'?"),
+        ("balance --driver a.py:ROBOT", "--driver needs --real-time: a robot's time passes by the clock"),
+        ("balance --driver a.py:ROBOT --real-time", "there is no file a.py with a driver"),
+        ("balance --driver a.py:ROBOT --fault 'all pads: 0 N'", "--fault is for the simulated robot"),
+        ("balance --driver a.py:ROBOT --real-time --engine mujoco", "--engine is for the simulated robot"),
+        ("balance --stand --no-supervisor", "--stand needs a supervisor: leave --no-supervisor out"),
+        ("balance --listen --no-supervisor", "--listen needs a supervisor: leave --no-supervisor out"),
+        ("--listen tcp/0.0.0.0:7447", "tcp/0.0.0.0:7447 can be reached from other machines"),
+        ("--lockstep", "it needs --listen"),
+        ("--lockstep --listen --real-time", "leave out --lockstep or --real-time"),
+    ],
+    "sarah-operate --robot tcp/127.0.0.1:9": [
+        ("--seed 3", "no robot listens at tcp/127.0.0.1:9"),
+        *(
+            (given, f"{given.split()[0]} has no effect on a robot that runs by itself: leave it or --robot out")
+            for given in (
+                "--engine mujoco",
+                "--episode.payload 5",
+                "--physics reference",
+                "--change '1: payload=5'",
+                "--compare-frozen",
+                "--fall-seconds 5",
+                "--push-seconds 5",
+                "--log a.mcap",
+            )
+        ),
+    ],
+    "sarah-log": [
+        ("", "give at least one log"),
+        ("nowhere.mcap", "cannot read nowhere.mcap: No such file or directory"),
+        (".", "cannot read .: it is not a regular file"),
+        ("my_task.py", "my_task.py is not an MCAP file"),
+        ("a.mcap --chek", "did you mean --check?"),
+        ("a.mcap --cut 1 2", "--cut and --out belong together: --cut BEGIN END --out FILE"),
+        ("a.mcap --cut 2 1 --out b.mcap", "cut must be two times in rising order, not (2.0, 1.0)"),
+        ("a.mcap --cut 2 3 --out b.mcap", "a.mcap has no message from 2 to 3 s"),
+        ("a.mcap --cut 0 1 --out a.mcap", "a.mcap is there already: name another file for the log"),
+        ("a.mcap a.mcap --csv tables", "--csv takes one log, not 2"),
+        ("a.mcap --check --csv tables", "give --check or --csv, not both"),
+        ("a.mcap --csv my_task.py", "cannot write folder my_task.py: File exists"),
+    ],
+    "sarah-train --resume mine": [
+        ("--algo naf", "algo is 'random' in this training, not 'naf': leave it out"),
+        ("--task balance", "task is 'stepping' in this training, not 'balance': leave it out"),
+        ("--slots 2", "slots is 4 in this training, not 2: leave it out"),
+        ("--engine mujoco", "not 'mujoco'"),
+        ("--episode.time-limit 9", "episode.time_limit is 30.0 in this"),
+        ("--out x", "leave --out, --config and --from out"),
+        ("--episodes 200", "it can be extended once it is finished: leave --episodes out"),
     ],
     "sarah-transfer": [
         ("", "give at least one run folder, numbers or a name"),
         ("full full", "anything but one run needs a folder for table and figure: --out DIR"),
-        ("balance", "anything but one run needs a folder for table and figure: --out DIR"),
     ],
 }
 
 
-@pytest.fixture(autouse=True)
-def full(tmp_path: Path) -> None:
-    (tmp_path / "full").mkdir()
-    (tmp_path / "full" / "precious.txt").write_text("data")
+NEEDS = {"sarah-transfer": ("pybullet", "mujoco"), "sarah-robot": ("mujoco",)}
+OWN = "import dataclasses, sarah\nTHRIFTY = dataclasses.replace(sarah.STEPPING, name='thrifty')\n"
 
 
 @pytest.mark.parametrize(
     ("line", "message"), [(f"{command} {rest}", text) for command, all_ in MISTAKES.items() for rest, text in all_]
 )
-def test_mistakes_get_one_line_and_leave_everything_alone(line: str, message: str, answer: Answer) -> None:
-    if line.startswith("sarah-transfer"):
-        need("pybullet")
-        need("mujoco")
+def test_mistakes_get_one_line_and_leave_everything_alone(
+    line: str, message: str, answer: Answer, tmp_path: Path
+) -> None:
+    for engine in NEEDS.get(line.split()[0], ()):
+        need(engine)
+    if "tcp/" in line:
+        pytest.importorskip("zenoh")
+    (tmp_path / "full").mkdir()
+    (tmp_path / "full" / "precious.txt").write_text("data")
+    (tmp_path / "my_task.py").write_text(OWN)
+    if " mine" in line:
+        config = TrainingConfig(algo="random", episode=EpisodeConfig(engine="pybullet"))
+        RunFolder.create(tmp_path / "mine", config)
+    if line.startswith("sarah-log"):
+        write(tmp_path / "a.mcap")
     assert message in answer(line)
 
 

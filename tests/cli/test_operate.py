@@ -1,5 +1,6 @@
-"""``sarah-operate``, as a user types it."""
+"""``sarah-operate`` and ``sarah-train --offline``, as a user types them, and what takes their folders."""
 
+import csv
 import dataclasses
 import json
 import re
@@ -7,13 +8,15 @@ import shutil
 from pathlib import Path
 
 import pytest
+from known_robots import LOGS
 from terminal import COARSE, Answer, done, run
 
 from sarah.cli.operate import change_of
 from sarah.cli.operate_text import scores_of
 from sarah.errors import TrainingInterruptedError
-from sarah.operation.settings import PARAMETERS, SHIPPED, Change
+from sarah.operation.settings import BOX, PARAMETERS, SHIPPED, Change
 from sarah.operation.window import FELT, Window
+from sarah.recognition.recognition import read_recognition
 from sarah.runs.session_folder import SessionFolder
 from sarah.training.operate import SessionResult
 
@@ -99,7 +102,7 @@ def test_an_interrupted_session_says_how_to_go_on(tmp_path: Path, monkeypatch: p
     assert process.stderr.endswith("\nsarah-operate: interrupted; go on with sarah-operate --resume mine\n")
 
 
-def test_a_session_is_compared_with_the_same_robot_without_learning(tmp_path: Path) -> None:
+def test_a_session_is_compared_with_one_without_learning(tmp_path: Path) -> None:
     process = done("sarah-operate", "--minutes", "0.1", *QUICK, "--compare-frozen", "--out", "mine", cwd=tmp_path)
     said, _, summary = process.stdout.partition("left with")
     assert "without learning, which takes as long again, into mine/frozen" in said
@@ -137,3 +140,66 @@ def test_what_has_no_effect_is_not_listed(tmp_path: Path) -> None:
     listed = set(re.findall(r"--episode[\w.-]+", run("sarah-operate", "--help", cwd=tmp_path).stdout))
     assert {"--episode.push.newtons", "--episode.payload"} <= listed
     assert listed.isdisjoint(("--episode.time-limit", "--episode.reward-form", "--episode.push.at-seconds"))
+
+
+@pytest.fixture(scope="module")
+def learned(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of a recognition that was learned from a table."""
+    folder = tmp_path_factory.mktemp("work")
+    with (folder / "logs.csv").open("w", newline="") as file:
+        writer = csv.writer(file)
+        writer.writerow(("robot", "kind", *BOX.names, "observed_reward", "fell", *FELT))
+        for robot in LOGS:
+            for one in robot.windows:
+                writer.writerow((robot.name, robot.kind, *one.parameters, one.reward, int(one.fell), *one.felt))
+    process = done("sarah-train", "--offline", "logs.csv", "--out", "known", cwd=folder)
+    assert "nearest from 72 windows of 6 robots" in process.stdout
+    assert "sarah-operate --learner recognise --from known" in process.stderr
+    return folder / "known"
+
+
+def test_other_commands_show_the_one_set_for_all(learned: Path) -> None:
+    best = json.loads((learned / "parameters.json").read_text())["parameters"]
+    short = ("--episodes", "1", "--episode.time-limit", "2", "--json")
+    found = json.loads(run("sarah-eval", "known", *short, cwd=learned.parent).stdout)
+    assert found["algorithm"] == "one set for all" and found["parameters"]["V1"] == best["V1"]
+
+
+def test_a_session_keeps_what_it_recognises_by(learned: Path) -> None:
+    arguments = ("--learner", "recognise", "--from", "known", *COARSE, "--out", "mine")
+    done("sarah-operate", *arguments, "--minutes", "0.1", cwd=learned.parent)
+    (learned / "recognition.json").rename(learned / "moved.json")
+    done("sarah-operate", "--resume", "mine", "--minutes", "0.15", cwd=learned.parent)
+    (learned / "moved.json").rename(learned / "recognition.json")
+    mine = SessionFolder.open(learned.parent / "mine")
+    assert len(mine.windows()) == 2
+    assert read_recognition(mine.recognition_path).identity == mine.spec().recognition
+    mine.recognition_path.write_text(read_recognition(mine.recognition_path).text().replace("kind 1", "kind 2"))
+    process = run("sarah-operate", "--resume", "mine", "--minutes", "0.2", cwd=learned.parent)
+    assert process.returncode == 2 and "another one is given" in process.stderr
+
+
+@pytest.mark.parametrize(
+    ("arguments", "reason"),
+    [
+        (("sarah-operate", "--from", "known"), "--from is for --learner recognise, not careful"),
+        (("sarah-operate", "--learner", "recognise", "--from", "nowhere"), "recognition folder nowhere does not exist"),
+        (("sarah-operate", "--learner", "recognise", "paper", "--from", "known"), "recognised with: 0.39,0.72"),
+        (
+            ("sarah-operate", "--learner", "recognise", "--from", "known", "--measure-seconds", "5"),
+            "the robot has measure_seconds 5.0, not 4.0",
+        ),
+        (("sarah-train", "--offline", "logs.csv", "--kind", "nearer"), "nearer"),
+        (("sarah-train", "--offline", "none.csv"), "cannot read none.csv"),
+        (("sarah-train", "--offline", "known"), "known is no log"),
+    ],
+)
+def test_mistakes_are_one_line_and_leave_no_folder(learned: Path, arguments: tuple[str, ...], reason: str) -> None:
+    process = run(*arguments, "--out", "new", cwd=learned.parent)
+    assert process.returncode == 2 and reason in process.stderr and process.stderr.count("\n") == 1
+    assert not (learned.parent / "new").exists()
+
+
+def test_coverage_is_shown(learned: Path) -> None:
+    process = done("sarah-log", "--coverage", "logs.csv", cwd=learned.parent)
+    assert "3 sets in all, 3 of them on more than one robot" in process.stdout

@@ -123,20 +123,6 @@ def test_a_file_of_settings_keeps_what_it_says(tmp_path: Path, begun: Begin) -> 
     assert episode.push.newtons == (30.0, 30.0) and episode.push.degrees == (90.0, 90.0)
 
 
-MISTAKES = {
-    "sarah-train --task my_task.py:THIFTY": "unknown task in my_task.py 'THIFTY', did you mean 'THRIFTY'?",
-    "sarah-train --task my_task.py": "name the task in my_task.py too, as in my_task.py:TASK",
-    "sarah-train --task nowhere.py:JUMP": "cannot read nowhere.py: No such file or directory",
-    "sarah-eval 1,0,1,0 --task my_task.py:THRIFTY": "must be 5 numbers (P1 to P5), not 4",
-}
-
-
-def test_mistakes(folder: Path) -> None:
-    for command, words in MISTAKES.items():
-        name, *arguments = command.split()
-        assert_one_line(run(name, *arguments, cwd=folder), words)
-
-
 def test_a_mistake_in_the_reward_names_file_and_line(folder: Path) -> None:
     (folder / "wrong.py").write_text(FILE.replace("tick.power", "tick.pover"))
     early = run("sarah-train", "--task", "wrong.py:THRIFTY", "--out", "wrong", cwd=folder)

@@ -1,13 +1,15 @@
-"""A robot that runs by itself, as a user operates it; and the tutorial about one, command by command.
+"""A robot that listens, and one that runs by itself, as a user operates them; and the tutorial, command by command.
 
-The robot and the viewer are processes of their own: that a learner, a viewer and a pusher reach another process is what
-the tutorial is about.
+The robot and the viewer of the tutorial are processes of their own: that a learner, a viewer and a pusher reach another
+process is what it is about.
 """
 
 import contextlib
+import json
 import re
 import shlex
 import subprocess
+import threading
 import time
 import urllib.request
 from collections.abc import Iterator
@@ -15,13 +17,77 @@ from contextlib import contextmanager
 from pathlib import Path
 
 import pytest
+from laboratory import need
 from listening import free_port, robot
-from terminal import BIN, Answer, done
+from terminal import BIN, Answer, done, run
 
+from sarah.cli.endpoints import with_endpoint
 from sarah.errors import RobotError
 from sarah.remote.client import Client
 from sarah.remote.endpoints import DEFAULT_ENDPOINT, Endpoint
+from sarah.remote.requests import Request
 from sarah.runs.session_folder import SessionFolder
+
+pytest.importorskip("zenoh")
+
+
+def test_parameters_state_standing_and_stepping(tmp_path: Path) -> None:
+    endpoint = Endpoint(f"tcp/127.0.0.1:{free_port()}")
+    to = ("--to", endpoint.address)
+    with robot(endpoint):
+        lines = done("sarah-push", "0.5,0,0.5,0", *to, cwd=tmp_path).stdout.splitlines()
+        assert lines[0].startswith("applied at tick ") and lines[1].startswith("kept at tick ")
+        lines = done("sarah-push", "balance", "--no-wait", "--json", *to, cwd=tmp_path).stdout.splitlines()
+        (answer,) = map(json.loads, lines)
+        assert (answer["schema"], answer["outcome"], answer["state"]) == (1, "applied", "stepping")
+        state = json.loads(done("sarah-push", "--state", "--json", *to, cwd=tmp_path).stdout)
+        assert state["parameters"] == {
+            **dict(zip(("P1", "P2", "P3", "P4", "P5"), (0.39, 0.72, 1.24, 0.61, 1.92), strict=True)),
+            **dict(zip(("V1", "V2", "V3", "V4"), (0.71, 0.41, 0.7, -0.39), strict=True)),
+        }
+        assert "parameters: P1 0.39, P2 0.72" in done("sarah-push", "--state", *to, cwd=tmp_path).stdout
+        refused = run("sarah-push", "--step", *to, cwd=tmp_path)
+        assert refused.returncode == 1 and "the robot steps already" in refused.stdout
+        assert "applied at tick" in done("sarah-push", "--stand", *to, cwd=tmp_path).stdout
+
+
+def test_a_robot_that_runs_takes_a_push(tmp_path: Path) -> None:
+    need("mujoco")
+    endpoint, answers = Endpoint(f"tcp/127.0.0.1:{free_port()}"), list[str]()
+
+    def push() -> None:
+        while True:
+            try:
+                with Client(endpoint) as client:
+                    for v1 in (-1.0, 0.6):  # from 0.71
+                        answers.extend(answer.outcome.value for answer in client.ask(Request("push", {"V1": v1})))
+                    return
+            except RobotError:
+                time.sleep(0.05)
+
+    pusher = threading.Thread(target=push)
+    pusher.start()
+    words = ("--engine", "mujoco", "--real-time", "--seconds", "2.5", "--listen", endpoint.address)
+    process = done("sarah-robot", "balance", *words, "--largest-change", "0.1", "--log", "run.mcap", cwd=tmp_path)
+    pusher.join()
+    assert "2 sets asked for, 2 applied" in done("sarah-log", "run.mcap", cwd=tmp_path).stdout
+    assert answers == ["refused", "applied", "stopped"] and f"listening at {endpoint.address}" in process.stderr
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ("--listen", "--listen tcp/127.0.0.1:7447"),
+        ("--listen balance", "--listen tcp/127.0.0.1:7447 balance"),
+        ("--listen --stand", "--listen tcp/127.0.0.1:7447 --stand"),
+        ("--listen tls/robot:1 balance", "--listen tls/robot:1 balance"),
+        ("--listen=tls/robot:1", "--listen=tls/robot:1"),
+        ("--listen udp/robot:1", "--listen udp/robot:1"),
+    ],
+)
+def test_an_address_may_be_left_out(given: str, words: str) -> None:
+    assert " ".join(with_endpoint(given.split())) == words
+
 
 pytest.importorskip("zenoh")
 
@@ -32,7 +98,6 @@ SHORT = ("--settle-seconds", "0", "--measure-seconds", "0.5")
 
 @contextmanager
 def begun(words: list[str], folder: Path) -> Iterator[subprocess.Popen[str]]:
-    """A command in a process of its own, which is asked to end."""
     process = subprocess.Popen(
         [str(BIN / words[0]), *words[1:]], cwd=folder, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True
     )
@@ -62,7 +127,6 @@ def headless(line: str, address: str, page: int) -> list[str]:
 
 
 def wait_for(address: str, process: subprocess.Popen[str]) -> None:
-    """Wait until a robot listens."""
     while process.poll() is None:
         with contextlib.suppress(RobotError), Client(Endpoint(address)) as client:
             client.state()
@@ -98,26 +162,6 @@ def test_the_tutorial(tmp_path: Path) -> None:
         re.search(rf"windows +{len(windows)}, observed reward", log) and (tmp_path / "run.html").stat().st_size > 10_000
     )
     assert "survival" in judged
-
-
-HAS_NO_EFFECT = (
-    *("--engine mujoco", "--episode.payload 5", "--physics reference", "--change '1: payload=5'", "--compare-frozen"),
-    *("--fall-seconds 5", "--push_seconds 5", "--log it.mcap", "--episode.push.newtons 20"),
-)
-
-
-def test_what_has_no_effect_on_a_robot_that_runs_by_itself_is_named(answer: Answer) -> None:
-    for option in HAS_NO_EFFECT:
-        name = shlex.split(option)[0].replace("_", "-")
-        words = f"{name} has no effect on a robot that runs by itself: leave it or --robot out"
-        assert words in answer(f"sarah-operate --robot tcp/127.0.0.1:9 {option}")
-    assert "no robot listens at tcp/127.0.0.1:9" in answer("sarah-operate --robot tcp/127.0.0.1:9 --seed 3")
-    assert "it needs --robot" in answer("sarah-operate --gone-seconds 5")
-    for line, words in (
-        ("sarah-robot --lockstep", "it needs --listen"),
-        ("sarah-robot --lockstep --listen --real-time", "leave out --lockstep or --real-time"),
-    ):
-        assert words in answer(line)
 
 
 def test_a_robot_that_measures_no_windows_is_no_robot_to_operate(tmp_path: Path, answer: Answer) -> None:

@@ -4,13 +4,13 @@ import contextlib
 import dataclasses
 import shlex
 from collections.abc import Callable
-from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 import pytest
 from laboratory import RESULT
-from pytest import CaptureFixture, MonkeyPatch
+from pytest import MonkeyPatch
+from terminal import run
 
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.episode.push import PushedConfig
@@ -107,7 +107,7 @@ class Ran:
 
 
 @pytest.fixture
-def ran(subjects: Path, tmp_path: Path, monkeypatch: MonkeyPatch, capsys: CaptureFixture[str]) -> Callable[[str], Ran]:
+def ran(subjects: Path, tmp_path: Path, monkeypatch: MonkeyPatch) -> Callable[[str], Ran]:
     """Runs a command line in this process: settings and P1 to P5 of all that it simulates, and what it shows."""
     found = Ran()
     build, set_parameters = RunningRobot.__init__, PatternGenerator.set_parameters
@@ -142,19 +142,16 @@ def ran(subjects: Path, tmp_path: Path, monkeypatch: MonkeyPatch, capsys: Captur
     for module, name in DRAWN:  # which would take most of the time
         monkeypatch.setattr(module, name, draw)
 
-    def run(line: str) -> Ran:
+    def ask(line: str) -> Ran:
         command, *arguments = shlex.split(line)
         for package in NEEDS.get(command, ()):
             pytest.importorskip(package)
-        monkeypatch.setattr("sys.argv", [command, *arguments])
-        try:
-            import_module(f"sarah.cli.{command.removeprefix('sarah-')}").main()
-        except SystemExit as ended:
-            assert ended.code == 130  # the training of which only the settings matter
-        found.printed = capsys.readouterr().out
+        process = run(command, *arguments, cwd=tmp_path)
+        assert process.returncode in (0, 130), process.stderr  # the training of which only the settings matter
+        found.printed = process.stdout
         return found
 
-    return run
+    return ask
 
 
 PUSH = {"push", *(f"push.{name}" for name in ("newtons", "degrees", "at_seconds", "duration", "sagittal_share"))}
@@ -230,9 +227,7 @@ def test_an_option_changes_nothing_else_of_a_sessions_windows(tmp_path: Path, mo
     for index, each in enumerate(((*LEGS, *HIPS), (*LEGS[::-1], *HIPS))):
         folder.append_window(Window(index, 6.0 * index, 6.0, index, each, 0.5, 0.5, False, (0.0,) * len(FELT)))
     changed = ["--episode.randomisation.friction", "0.5", "--episode.dimensions", "thigh_length", "0.36"]
-    monkeypatch.setattr("sys.argv", ["sarah-view", str(folder.path), *changed])
-    with pytest.raises(SystemExit):
-        import_module("sarah.cli.view").main()
+    assert run("sarah-view", str(folder.path), *changed, cwd=tmp_path).returncode == 130
     windows = [choice.spec.config for choice in shown if choice.name != "best"]
     assert [window.stepping for window in windows] == [LEGS, LEGS[::-1]]  # type: ignore[attr-defined]
     assert [window.payload for window in windows] == [0.0, 5.0]

@@ -1,4 +1,4 @@
-"""What a command looks at: its argument, whatever the values of its options are called, and what it says of it."""
+"""What a command looks at, whatever its options are called; options set settings, and one number is a whole range."""
 
 import dataclasses
 import json
@@ -9,17 +9,21 @@ from types import SimpleNamespace
 import pytest
 from laboratory import RESULT
 from pytest import MonkeyPatch
-from terminal import COARSE, Trained, done, run
+from terminal import COARSE, Begin, Trained, done, run
 
 import sarah
 from sarah.cli.episode_options import EpisodeOptions
 from sarah.cli.eval_text import rows_of
+from sarah.cli.options import parse_options
+from sarah.cli.train import TrainOptions
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push, draw_push
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.episode.tasks.balance import TRAINED_STEPPING
+from sarah.runs.agent_settings import NAFSettings, TD3Settings
+from sarah.runs.config_files import settings_by_key, write_config
 from sarah.simulation.engines import default_engine
 from sarah.simulation.physics import Physics, PyBulletPhysics
 
@@ -81,8 +85,7 @@ def test_options_reach_the_episodes(tmp_path: Path) -> None:
     assert alone["score_mean"] == pytest.approx(sum(plain) / 2) and alone["algorithm"] is None
     pushed = shown("stepping", "--episode.push.newtons", "400", folder=tmp_path)
     assert alone["survival_rate"] == 1.0 and pushed["survival_rate"] == 0.0
-    exact = shown("stepping", "--no-randomisation", folder=tmp_path)
-    assert exact["score_mean"] != alone["score_mean"] and exact["survival_rate"] == 1.0
+    assert shown("stepping", "--no-randomisation", folder=tmp_path)["score_mean"] != alone["score_mean"]
     own = BalanceConfig(engine="pybullet", physics=PyBulletPhysics(rate=400, control_rate=200))
     options = EpisodeOptions(physics="reference", episode=own)
     physics = options.applied_to(EpisodeSpec((0.0,) * 4, 0, BALANCE)).config.physics
@@ -160,3 +163,59 @@ def test_the_page_says_where_it_is_and_what_it_shows(
     assert lines[0] == f"balance: {PARAMETER_SETS['balance'].origin}"
     assert lines[-1] == f"SARAH is at http://{host}:8083 (Ctrl-C ends)" and closed
     assert [line for line in lines if "no password" in line] == lines[1:-1] and len(lines) == 2 + warned
+
+
+def test_options_set_the_agent_and_a_file_repeats_it(begun: Begin) -> None:
+    config = begun("sarah-train --agent.preset paper --agent.mu-layers 8 --agent.learning-rate 1e-4")
+    assert config.agent == NAFSettings(preset="paper", mu_layers=(8,), learning_rate=1e-4)
+    config = begun("sarah-train --algo td3 --agent.layers 8 8 --agent.learning-starts 8")
+    assert config.agent == TD3Settings(layers=(8, 8), learning_starts=8)
+    write_config(config, Path("td3.yaml"))
+    assert begun("sarah-train --config td3.yaml") == config
+    again = begun("sarah-train --config td3.yaml --agent.gradient-steps 9").agent
+    assert again == TD3Settings(layers=(8, 8), learning_starts=8, gradient_steps=9)
+
+
+def test_the_command_line_changes_the_file(begun: Begin) -> None:
+    Path("mine.yaml").write_text("agent: {tau: 0.1, v_layers: [4], preset: paper, l_layers: [4]}")
+    same = begun("sarah-train --config mine.yaml --agent.preset paper --agent.l-layers 5").agent
+    assert same == NAFSettings(preset="paper", tau=0.1, v_layers=(4,), l_layers=(5,))
+    assert begun("sarah-train --config mine.yaml --agent.preset one-step").agent == NAFSettings(tau=0.1)
+    assert begun("sarah-train --config mine.yaml --algo td3").agent == TD3Settings()
+
+
+HELP = {
+    "--help": (("--agent.elite-share", "(0 to 1; default: ", "{one-step,noisy,paper}"), "--agent.layers"),
+    "--algo td3 --help": (("--agent.layers", "--agent.policy-delay"), "--agent.elite-share"),
+    "--algo=cma-es --help": (("--agent.population",), "--agent.learning-rate"),
+    "--algo random --help": (("--episode.time-limit",), "--agent."),
+}
+
+
+@pytest.mark.parametrize("arguments", HELP)
+def test_the_help_shows_the_settings_of_the_algorithm(arguments: str, tmp_path: Path) -> None:
+    shown, hidden = HELP[arguments]
+    process = done("sarah-train", *arguments.split(), cwd=tmp_path)
+    assert all(text in process.stdout for text in shown) and hidden not in process.stdout
+
+
+PUSHED = EpisodeOptions(episode=sarah.PushedConfig())
+
+
+RANGES: dict[str, dict[str, list[float]]] = {
+    "--episode.push.newtons 80": {"push.newtons": [80.0, 80.0]},
+    "--episode.push.newtons=80": {"push.newtons": [80.0, 80.0]},
+    "--episode.push.newtons 1e1 2e1": {"push.newtons": [10.0, 20.0]},
+    "--episode.push.newtons 80 --engine pybullet": {"push.newtons": [80.0, 80.0]},
+    "--episode.push.at_seconds 3 --episode.push.degrees 0 90": {"push.at_seconds": [3, 3], "push.degrees": [0, 90]},
+    "--episode.randomisation.actuator_bandwidth 40": {"randomisation.actuator_bandwidth": [40.0, 40.0]},
+    "--episode.terrain.slope-degrees 0 5": {"terrain.slope_degrees": [0.0, 5.0]},
+}
+
+
+@pytest.mark.parametrize("words", RANGES)
+def test_one_number_is_a_range_on_the_command_line(words: str) -> None:
+    episode = parse_options(EpisodeOptions, "sarah-eval", words.split(), PUSHED).episode
+    assert RANGES[words].items() <= settings_by_key(episode).items()
+    train = parse_options(TrainOptions, "sarah-train", ["--agent.exploration-std", "0.2"], TrainOptions())
+    assert train.training.agent.exploration_std == (0.2, 0.2)  # type: ignore[attr-defined]

@@ -94,7 +94,7 @@ class Clock:
         self.now += seconds
 
 
-def test_deadlines_do_not_drift_and_those_that_passed_are_left_out() -> None:
+def test_deadlines_do_not_drift_and_passed_ones_are_left_out() -> None:
     clock = Clock()
     pacing = RealTime(0.01, clock, clock.sleep)
     lateness = []
@@ -130,22 +130,24 @@ class Robot(Driver):
         self.sent.append(targets)
 
 
-@pytest.mark.parametrize("is_read_only", [False, True])
-def test_a_robot_of_ones_own_needs_to_read_and_to_send(is_read_only: bool) -> None:
-    robot, config = Robot(), supervised(BalanceConfig())
-    controller = controller_for(config, robot.limits)
+def drive(robot: Robot, *observers: Any, is_read_only: bool = False) -> None:
+    config = supervised(BalanceConfig())
     stepping, balance = controller_of(BALANCE, V, config)
     assert balance is not None
-    ControlLoop(robot, controller, stepping, balance, 0.01, Lockstep(), is_read_only=is_read_only).run()
-    assert len(robot.sent) == (0 if is_read_only else 300)
+    controller = controller_for(config, robot.limits)
+    ControlLoop(robot, controller, stepping, balance, 0.01, Lockstep(), observers, is_read_only=is_read_only).run()
 
 
-def test_a_clock_that_jumps_back_does_not_turn_the_time_of_the_loop_back(monkeypatch: pytest.MonkeyPatch) -> None:
-    robot, config, ticks = Robot(), supervised(BalanceConfig()), list[LoopTick]()
+def test_a_robot_of_ones_own_needs_to_read_and_to_send() -> None:
+    for is_read_only in (False, True):
+        drive(robot := Robot(), is_read_only=is_read_only)
+        assert len(robot.sent) == (0 if is_read_only else 300)
+
+
+def test_a_clock_that_jumps_back_turns_no_time_of_the_loop_back(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot, ticks = Robot(), list[LoopTick]()
     monkeypatch.setattr(robot, "now", lambda: np.float64(0.01 * robot.ticks - (1000.0 if robot.ticks > 150 else 0.0)))
-    controller, (stepping, balance) = controller_for(config, robot.limits), controller_of(BALANCE, V, config)
-    assert balance is not None
-    ControlLoop(robot, controller, stepping, balance, 0.01, Lockstep(), [ticks.append]).run()
+    drive(robot, ticks.append)
     assert [tick.seconds for tick in ticks] == pytest.approx([0.01 * index for index in range(300)])
     assert {type(tick.seconds) for tick in ticks} == {float}
 
@@ -169,7 +171,7 @@ def test_a_driver_is_found_in_a_file(tmp_path: Any) -> None:
             read_driver(reference)
 
 
-def test_one_that_goes_on_is_put_up_after_a_fall_and_steps_again_when_it_is_asked_to(engine: Any) -> None:
+def test_one_that_goes_on_is_put_up_and_steps_again_when_asked(engine: Any) -> None:
     config = supervised(BalanceConfig(engine=engine, push=Push(newtons=800.0, at_seconds=(2.0, 2.0)), time_limit=2.5))
     robot, loop = simulated_loop(EpisodeSpec(V, 3, BALANCE, config), goes_on=True)
     lay, states = list[bool](), list[State]()

@@ -4,8 +4,6 @@ A process forked from this one runs a loop of 100 ticks per second that logs, un
 moment. Its log is then read.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import random
 import tempfile
@@ -45,14 +43,9 @@ class KilledLogs(Timing):
     kills: int = 100
 
     def cases(self) -> list[Row]:
-        """One case."""
         return [{"ticks_per_second": round(1.0 / DT)}]
 
     def rows(self, ticks_per_second: int) -> Iterator[Row]:
-        """How much the logs lost.
-
-        :param ticks_per_second: rate of the loop
-        """
         lost = [seconds_lost(seed) for seed in range(self.kills)]
         yield {"kills": self.kills, "mean_lost_s": sum(lost) / len(lost), "most_lost_s": max(lost)}
 
@@ -62,11 +55,7 @@ QUICK = KilledLogs(kills=1)
 
 
 def seconds_lost(seed: int) -> float:
-    """Time that is missing at the end of the log of a killed process, in s.
-
-    :param seed: seed of the moment
-    :raises ResultError: if the log has a gap, or lost more than :data:`MOST_LOST`
-    """
+    """Time that is missing at the end of the log of a killed process, in s."""
     logged: Synchronized[int] = FORK.Value("q", 0)
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "run.mcap")
@@ -84,7 +73,7 @@ def seconds_lost(seed: int) -> float:
     return lost
 
 
-def _log(path: Path, logged: Synchronized[int]) -> None:
+def _log(path: Path, logged: "Synchronized[int]") -> None:
     """Log ticks by absolute deadlines until something kills the process."""
     with RobotLog(path, {}) as log:
         begin = time.monotonic()

@@ -3,14 +3,14 @@
 A training whose workers are killed again and again ends with the same bytes as one that is left alone.
 """
 
-from __future__ import annotations
-
+import os
 import tempfile
 import time
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import psutil
 from pandas import DataFrame
 
 from benchmarks.timing import Timing
@@ -25,7 +25,6 @@ from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
 
 from .kills import left_behind
-from .worker_processes import worker_processes
 
 WORKERS = 2
 
@@ -43,15 +42,9 @@ class KilledWorkers(Timing):
     seconds_between_kills: float = 20.0
 
     def cases(self) -> list[Row]:
-        """One."""
         return [{"episodes": self.budget, "seconds_between_kills": self.seconds_between_kills}]
 
     def rows(self, episodes: int, seconds_between_kills: float) -> Iterator[Row]:
-        """Kills, and what they cost.
-
-        :param episodes: number of episodes of the training
-        :param seconds_between_kills: time from one kill to the next, in s
-        """
         with tempfile.TemporaryDirectory() as folder, Workers(WORKERS) as workers:
             list(workers.simulate_all([EpisodeSpec(PAPER_STEPPING, seed) for seed in range(2 * WORKERS)]))  # warm up
             alone, disturbed = Path(folder, "alone"), Path(folder, "disturbed")
@@ -90,13 +83,7 @@ class Killer:
 
 
 def seconds_of_training(episodes: int, folder: Path, workers: Workers, interrupted: Callable[[], bool]) -> float:
-    """Train; the time that it takes, in s.
-
-    :param episodes: number of episodes
-    :param folder: run folder
-    :param workers: workers that simulate
-    :param interrupted: function that is called after each episode
-    """
+    """Train; the time that it takes, in s."""
     config = TrainingConfig(episodes=episodes)
     start = time.perf_counter()
     train(config, RunFolder.create(folder, config), workers, interrupted=interrupted)
@@ -107,3 +94,9 @@ def cost(rows: DataFrame) -> str:
     """Kills, and how much longer the training took."""
     formats = {"kills": ".0f", "_s": ".0f", "longer": ".0%"}
     return table(rows, list(rows.columns), "A First Training with two workers, which were killed in turn.", **formats)
+
+
+def worker_processes(workers: Workers) -> list[psutil.Process]:
+    """Processes of workers of this machine that are ready to simulate, in the order of their ids."""
+    assert workers.client is not None
+    return [psutil.Process(pid) for pid in sorted(workers.client.run(os.getpid, on_error="ignore").values())]

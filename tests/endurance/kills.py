@@ -4,8 +4,6 @@ A training is a process forked from this one, which has everything loaded. So ki
 while it makes its folder, reads or writes the journal, learns, or replaces files.
 """
 
-from __future__ import annotations
-
 import multiprocessing
 import random
 import shutil
@@ -15,6 +13,7 @@ import zipfile
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from pandas import DataFrame
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
@@ -50,14 +49,9 @@ class Kills(Timing):
     trainings: int = 3
 
     def cases(self) -> list[Row]:
-        """The algorithms."""
         return [{"algorithm": algorithm} for algorithm in self.algorithms]
 
     def rows(self, algorithm: str) -> Iterator[Row]:
-        """How often the trainings were killed.
-
-        :param algorithm: name of the algorithm
-        """
         yield {"trainings": self.trainings, "kills": sum(kills(algorithm, seed) for seed in range(self.trainings))}
 
 
@@ -66,12 +60,7 @@ QUICK = Kills(algorithms=("naf",), trainings=1)
 
 
 def kills(algorithm: str, seed: int) -> int:
-    """Number of kills of a training, which ends with the same bytes as without them.
-
-    :param algorithm: name of the algorithm
-    :param seed: seed of the training and of the moments
-    :raises ResultError: if it ends with other bytes
-    """
+    """Number of kills of a training, which ends with the same bytes as without them."""
     config = TrainingConfig(algo=algorithm, episodes=EPISODES, seed=seed, slots=3, episode=SHORT)
     generator, count = random.Random(seed), 0
     with tempfile.TemporaryDirectory() as folder:
@@ -88,12 +77,7 @@ def kills(algorithm: str, seed: int) -> int:
 
 
 def trained(config: TrainingConfig, folder: Path, seconds: float | None) -> bool:
-    """Train in a process of its own; whether it finished before it was killed.
-
-    :param config: settings of the training
-    :param folder: its run folder
-    :param seconds: time until it is killed, in s; with ``None`` it is left alone
-    """
+    """Train in a process of its own, which is killed after some seconds; whether it finished before."""
     process = FORK.Process(target=begin_or_resume, args=(config, folder))
     process.start()
     process.join(seconds)
@@ -107,11 +91,7 @@ def trained(config: TrainingConfig, folder: Path, seconds: float | None) -> bool
 
 
 def begin_or_resume(config: TrainingConfig, folder: Path) -> None:
-    """Train until something kills the process.
-
-    :param config: settings of the training
-    :param folder: its run folder
-    """
+    """Train until something kills the process."""
     if (folder / "config.yaml").exists():
         run = RunFolder.open(folder, unfinished=True)
     else:  # killed before there was anything to resume
@@ -120,13 +100,10 @@ def begin_or_resume(config: TrainingConfig, folder: Path) -> None:
     train(config, run)
 
 
-def left_behind(folder: Path) -> dict[str, object]:
-    """Everything of a run folder but the time of day.
-
-    :param folder: the run folder
-    """
+def left_behind(folder: Path) -> dict[str, Any]:
+    """Everything of a run folder but the time of day."""
     names = ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json")
-    found: dict[str, object] = {name: (folder / name).read_bytes() for name in names}
+    found: dict[str, Any] = {name: (folder / name).read_bytes() for name in names}
     if (folder / "model.zip").exists():
         archive = zipfile.ZipFile(folder / "model.zip")
         found |= {name: archive.read(name) for name in archive.namelist() if name.endswith(".pth")}

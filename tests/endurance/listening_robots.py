@@ -1,7 +1,5 @@
 """Robots that run in real time and listen, for what is sent to them."""
 
-from __future__ import annotations
-
 import contextlib
 import dataclasses
 import socket
@@ -62,10 +60,7 @@ def free_port() -> Endpoint:
 
 @contextlib.contextmanager
 def in_a_process(*options: str) -> Iterator[Robot]:
-    """A robot that has begun to step, in a process of its own.
-
-    :param options: further options of ``sarah-robot``
-    """
+    """A robot that has begun to step, in a process of its own."""
     endpoint = free_port()
     words = ["balance", "--engine", "mujoco", "--real-time", "--listen", endpoint.address, "--seconds", "3590"]
     with running("robot", *words, *options) as process:
@@ -75,11 +70,7 @@ def in_a_process(*options: str) -> Iterator[Robot]:
 
 @contextlib.contextmanager
 def running(command: str, *words: str) -> Iterator[subprocess.Popen[bytes]]:
-    """A command of the package, which is killed in the end.
-
-    :param command: name of the command without ``sarah-``
-    :param words: its arguments
-    """
+    """A command of the package, which is killed in the end."""
     silent: dict[str, Any] = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
     process = subprocess.Popen([sys.executable, "-c", COMMAND.format(command), *words], **silent)
     try:
@@ -101,10 +92,7 @@ def _wait_for(endpoint: Endpoint) -> None:
 
 @contextlib.contextmanager
 def in_this_process(stands: bool) -> Iterator[Robot]:
-    """A robot in a thread of this process.
-
-    :param stands: whether it stands; otherwise it has begun to step
-    """
+    """A robot in a thread of this process."""
     shipped = PARAMETER_SETS["balance"].spec
     config: Any = shipped.task.config_of(shipped.config, engine="mujoco", push=NO_PUSH, time_limit=3600.0)
     supervisor = dataclasses.replace(config.supervisor, enabled=True)

@@ -4,8 +4,6 @@ Many episodes in one process, and a training with workers. Episodes are short on
 that is built, not with every second simulated.
 """
 
-from __future__ import annotations
-
 import gc
 import tempfile
 from collections.abc import Iterator
@@ -31,7 +29,7 @@ from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
 from sarah.training.train import train
 
-from .worker_processes import worker_processes
+from .killed_workers import worker_processes
 
 SHORT = EpisodeConfig(time_limit=1.3, physics=Physics(rate=100, solver_iterations=5))
 LOOKS = 8
@@ -54,14 +52,9 @@ class LongRun(Timing):
     largest_growth: float = 20.0
 
     def cases(self) -> list[Row]:
-        """The two runs."""
         return [{"run": ALONE}, {"run": "training"}]
 
     def rows(self, run: str) -> Iterator[Row]:
-        """Memory and open files of each process, along the way.
-
-        :param run: name of the run
-        """
         found = list(self._episodes() if run == ALONE else self._training())
         grown = growths(DataFrame(found).assign(run=run)).growth_mib.max()
         if grown > self.largest_growth:
@@ -97,12 +90,7 @@ QUICK = LongRun(episodes=16, budget=8, largest_growth=200.0)
 
 
 def usage(episodes: int, name: str, process: psutil.Process) -> Row:
-    """Columns of a process.
-
-    :param episodes: number of episodes so far
-    :param name: name of the process
-    :param process: the process
-    """
+    """Columns of a process."""
     memory, files = process.memory_info().rss / 2**20, process.num_fds()
     return {"episodes": episodes, "process": name, "memory_mib": memory, "open_files": files}
 

@@ -4,8 +4,6 @@ One change after another is made to a copy of a file. Each is a mutant, and test
 ``survivors.tsv`` says which mutants nothing can kill, by their changed line, and why.
 """
 
-from __future__ import annotations
-
 import csv
 import os
 import shlex
@@ -48,7 +46,7 @@ ENDING = "tests/episode/test_ending.py -k criteria"
 SENSORS = "tests/simulation/test_sensors.py -k 'not push'"
 CRITIC = "tests/agents/test_naf_equations.py"
 TARGETS = "tests/agents/test_naf_targets.py tests/agents/test_naf_train_eval_mode.py"
-BUFFERS = "tests/agents/test_best_action.py tests/agents/test_rank_buffer.py tests/agents/test_naf_arguments.py"
+BUFFERS = "tests/agents/test_rank_buffer.py tests/agents/test_naf_arguments.py"
 
 SUBJECTS = {
     "sarah/control/baselines.py": Subject(CONTROL),
@@ -81,14 +79,9 @@ class Mutants(Timing):
     count: int = 10_000
 
     def cases(self) -> list[Row]:
-        """The files."""
         return [{"file": file} for file in self.files]
 
     def rows(self, file: str) -> Iterator[Row]:
-        """How many mutants of a file its tests kill; what survives is printed.
-
-        :param file: name of the file
-        """
         with tempfile.TemporaryDirectory() as folder:
             for name in COPIED:
                 if (ROOT / name).is_dir():
@@ -107,14 +100,7 @@ QUICK = Mutants(files=("sarah/episode/reward.py",), count=2)
 
 
 def judged(file: str, subject: Subject, tree: Path, count: int) -> Row:
-    """Test the mutants of a file, and print what survives.
-
-    :param file: name of the file
-    :param subject: its tests
-    :param tree: copy of the project
-    :param count: largest number of mutants
-    :raises ResultError: if the tests fail without a change
-    """
+    """Test the mutants of a file, and print what survives."""
     from .mutation import mutated, mutations  # takes long to import
 
     start = time.perf_counter()
@@ -142,12 +128,7 @@ def judged(file: str, subject: Subject, tree: Path, count: int) -> Row:
 
 
 def passes(tests: str, tree: Path, patience: float | None) -> bool:
-    """Whether tests pass; an endless loop is a failure.
-
-    :param tests: arguments of pytest that select them
-    :param tree: copy of the project
-    :param patience: longest time for the tests, in s; ``None`` for the file without a change
-    """
+    """Whether tests pass; an endless loop is a failure."""
     options = ["-x", "-q", "-p", "no:cacheprovider", "--hypothesis-seed=0", *shlex.split(tests)]
     environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "x" if patience else ""}
     command = [sys.executable, "-m", "pytest", *options]

@@ -1,7 +1,5 @@
 """What Cosmic Ray changes in a file: numbers, arithmetic, comparisons, conditions, loops; and numbers by a tenth."""
 
-from __future__ import annotations
-
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -32,20 +30,13 @@ class ScaledNumber(NumberReplacer):
     """Multiply a number that is no integer by 1.1; 0.0 stays to Cosmic Ray, which adds and subtracts 1."""
 
     def mutation_positions(self, node: Any) -> Iterator[tuple[Any, Any]]:
-        """Where a syntax node can be changed: in one way, or not at all.
-
-        :param node: node of the syntax tree
-        """
+        """Where a syntax node can be changed: in one way, or not at all."""
         for position in list(super().mutation_positions(node))[:1]:
             if not node.value.isdigit() and float(node.value) != 0.0:
                 yield position
 
     def mutate(self, node: Any, index: int) -> Number:
-        """Change a node.
-
-        :param node: number of the syntax tree
-        :param index: number of the way; there is only one
-        """
+        """Change a node."""
         return Number(f" {FACTOR * float(node.value):.12g}", node.start_pos)
 
 
@@ -53,11 +44,7 @@ OPERATOR_PROVIDERS["sarah"] = {"ScaledNumber": ScaledNumber}
 
 
 def mutations(file: Path, definitions: str) -> list[Any]:
-    """Cosmic Ray's mutations of a file, in the order of its lines.
-
-    :param file: the file
-    :param definitions: regular expression of the functions and classes that are changed; empty names are the module's
-    """
+    """Cosmic Ray's mutations of a file, in the order of its lines."""
     with use_db(":memory:") as session:
         init([file], session, {})
         found = [mutation for item in session.work_items for mutation in item.mutations]
@@ -72,10 +59,7 @@ def mutations(file: Path, definitions: str) -> list[Any]:
 
 @contextmanager
 def mutated(mutation: Any) -> Iterator[tuple[int, str]]:
-    """Context in which a file is changed; number and code of the changed line.
-
-    :param mutation: what Cosmic Ray changes
-    """
+    """Context in which a file is changed; number and code of the changed line."""
     operator, line = get_operator(mutation.operator_name)(), mutation.start_pos[0]
     with use_mutation(mutation.module_path, operator, mutation.occurrence) as (_, code):
         yield line, code.splitlines()[line - 1].strip()

@@ -4,8 +4,6 @@ Each is taken out of a copy of the package. ``protections.tsv`` has what users a
 promise, its code that does, what stands there instead, and the name of the test that must fail then.
 """
 
-from __future__ import annotations
-
 import csv
 import os
 import shutil
@@ -39,14 +37,9 @@ class Protections(Timing):
     count: int = len(PROTECTIONS)
 
     def cases(self) -> list[Row]:
-        """What is promised."""
         return [{"promise": promise} for promise in list(PROTECTIONS)[: self.count]]
 
     def rows(self, promise: str) -> Iterator[Row]:
-        """The test that fails without a protection.
-
-        :param promise: what is promised
-        """
         protection = PROTECTIONS[promise]
         place = place_of(protection["test"])
         with tempfile.TemporaryDirectory() as folder:
@@ -67,10 +60,7 @@ class Protections(Timing):
 
 
 def place_of(test: str) -> str:
-    """A test with its file, as pytest takes it.
-
-    :param test: name of the test
-    """
+    """A test with its file, as pytest takes it."""
     files = ROOT.glob("tests/**/test_*.py")
     (file,) = (path for path in files if f"def {test}(" in path.read_text(encoding="utf-8"))
     return f"{file.relative_to(ROOT)}::{test}"

@@ -5,8 +5,6 @@ loop runs in this process, which knows in which ticks its legs swap. A network t
 nothing: what is sent arrives when it is back.
 """
 
-from __future__ import annotations
-
 import contextlib
 import random
 import subprocess
@@ -63,15 +61,10 @@ class Pushes(Timing):
     pushes: int = 1000
 
     def cases(self) -> list[Row]:
-        """What is sent."""
         names = (NOTHING, WATCHED, GARBAGE, FLOOD, GONE, KILLED, TWO, *IN_THIS_PROCESS)
         return [{"sent": name} for name in names]
 
     def rows(self, sent: str) -> Iterator[Row]:
-        """What the robot does meanwhile.
-
-        :param sent: what is sent
-        """
         with self._robot(sent) as robot, Client(robot.endpoint) as client:
             before, memory = client.state(), robot.memory_mib
             messages, answers = self._send(sent, robot)
@@ -215,10 +208,7 @@ def standing(robot: Robot, number: int, generator: random.Random) -> tuple[int, 
 
 
 def gone(robot: Robot, seconds: float) -> tuple[int, int]:
-    """Push, lose the network while the robot tries the parameters, and push again when it is back.
-
-    :param seconds: time without a network, in s
-    """
+    """Push, lose the network while the robot tries the parameters, and push again when it is back."""
     generator = random.Random(0)
     with Relay(robot.endpoint) as relay, Client(relay.endpoint) as client:
         first = next(iter(client.ask(near(generator))))

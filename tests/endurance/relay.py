@@ -1,7 +1,5 @@
 """A network that can be lost: a relay between a robot and who talks to it, which can stop to forward."""
 
-from __future__ import annotations
-
 import contextlib
 import socket
 import threading
@@ -31,14 +29,12 @@ class Relay:
         self._open = [self._listener]
         threading.Thread(target=self._accept, daemon=True).start()
 
-    def __enter__(self) -> Relay:
-        """Nothing happens."""
+    def __enter__(self) -> "Relay":
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        """Close all connections."""
         for one in self._open:
             one.close()
         self.go_on()

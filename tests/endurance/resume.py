@@ -3,8 +3,6 @@
 Processor time to replay a whole First Training, with nothing simulated.
 """
 
-from __future__ import annotations
-
 import tempfile
 import time
 from collections.abc import Iterator
@@ -40,14 +38,9 @@ class Resume(Timing):
     budget: int = 100
 
     def cases(self) -> list[Row]:
-        """The algorithms."""
         return [{"algorithm": algorithm} for algorithm in self.algorithms]
 
     def rows(self, algorithm: str) -> Iterator[Row]:
-        """Time of a replay, and size of the journal.
-
-        :param algorithm: name of the algorithm
-        """
         config = TrainingConfig(algo=algorithm, episodes=self.budget, episode=SHORT)
         with tempfile.TemporaryDirectory() as folder:
             run = RunFolder.create(Path(folder) / "run", config)

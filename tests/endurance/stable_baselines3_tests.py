@@ -4,8 +4,6 @@ Takes the source of the installed version with pip, and runs every test that nam
 need a part of the class that NAF lacks must fail. For these runs this module is also a plugin of pytest.
 """
 
-from __future__ import annotations
-
 import inspect
 import os
 import subprocess

@@ -44,7 +44,7 @@ def test_what_stays_ours_is_named_nowhere(tmp_path: Path) -> None:
         compile(text if path.suffix == ".py" else "", str(path), "exec")
 
 
-def test_tests_and_conditions_that_name_what_stays_go_with_what_they_need() -> None:
+def test_what_names_ours_goes_with_what_it_needs() -> None:
     source = (
         "from sarah.agents.buffers import RankReplayBuffer\n"
         "RANKED = dict(replay_buffer_class=RankReplayBuffer)\n"

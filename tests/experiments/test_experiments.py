@@ -10,15 +10,17 @@ from types import SimpleNamespace
 from typing import Any
 
 import pytest
+from endurance.mutants import EXPLAINED, SUBJECTS
+from endurance.protections import PROTECTIONS, place_of
 from laboratory import need
 from pytest import CaptureFixture, MonkeyPatch
 
 from experiments import record
 from experiments.command import age, main
 from experiments.experiment import Experiment, product
-from experiments.found import BENCHMARKS, EXPERIMENTS, find, paths_of, questions
+from experiments.found import BENCHMARKS, ENDURANCE, EXPERIMENTS, find, paths_of, questions
 from experiments.making import make
-from experiments.record import Result, Row
+from experiments.record import ROOT, Result, Row
 from sarah.errors import ConfigurationError, SarahError
 
 
@@ -134,9 +136,7 @@ def test_rows_of_before_keep_what_their_head_says(tmp_path: Path) -> None:
     assert (whole.tree, whole.remark, len(whole.rows)) == ("dirty", "Squares were rounder.", 6)
 
 
-def test_rows_are_made_in_pieces_at_several_commits_and_on_several_machines(
-    tmp_path: Path, monkeypatch: MonkeyPatch
-) -> None:
+def test_rows_are_made_at_several_commits_and_machines(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:
     """The file is what a commit brings to another machine, where the project and its packages are newer."""
     full = Squares(fails_at=1)
     for number, torch in enumerate(("2.12", "2.13", "2.13"), start=1):
@@ -194,3 +194,22 @@ def test_a_result_is_read_as_it_was_written(tmp_path: Path) -> None:
     assert result.rows == [{"run": "a, b # c", "score": "0.12346", "episodes_to_90": "inf", "note": ""}]
     assert dataclasses.replace(result, rows=()) == about
     assert result.table.to_dict("records")[0]["score"] == 0.12346
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", paths_of(ENDURANCE))
+def test_an_endurance_test_makes_the_columns_of_its_result(name: str, tmp_path: Path) -> None:
+    made = record.read(make(find(name), "python -m some", ["--quick", "--out", str(tmp_path)]).stem, tmp_path)
+    assert list(made.rows[0]) == list(record.read(name).rows[0]) and not made.missing
+
+
+def test_explanations_are_of_files_that_are_tested() -> None:
+    assert set(EXPLAINED.file) <= set(SUBJECTS)
+    assert all((ROOT / file).is_file() for file in SUBJECTS)
+
+
+@pytest.mark.parametrize("promise", PROTECTIONS)
+def test_what_protects_is_there_once_and_has_its_test(promise: str) -> None:
+    protection = PROTECTIONS[promise]
+    assert (ROOT / "sarah" / protection["file"]).read_text(encoding="utf-8").count(protection["code"]) == 1
+    assert place_of(protection["test"])

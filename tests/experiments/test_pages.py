@@ -1,19 +1,36 @@
-"""The pages show today's results, and read as they lie."""
+"""The pages show today's results, read as they lie, and make of rows what one computes by hand."""
 
+import math
 import re
 from collections import Counter
 from pathlib import Path
 
+import gymnasium as gym
 import pytest
+import torch as th
 from laboratory import need
 from pandas import DataFrame, Series
+from pytest import approx
+from torch import nn
 
 from experiments import record
 from experiments.found import paths_of
+from experiments.interquartile import improvement, interquartile_mean
+from experiments.naf.learners import COMPARED, PUBLISHED, WIDER, WITH_NAFS_SETTINGS, WITHOUT, agent
+from experiments.naf.mujoco_tasks import FULL, TASKS, answer, four_algorithms
+from experiments.naf.standard_tasks import answer as answer_of_ranges
+from experiments.naf.standard_tasks import ends, over_seeds
 from experiments.pages import write
 from experiments.record import ROOT
+from experiments.robot import engines, landscape, physics
+from experiments.robot.conditions import askew, biased
 from experiments.robot.first_training import settling
+from experiments.robot.hard_pushes import difference
+from experiments.robot.race import columns, curve_of, ranked
 from experiments.tables import heading, shown, span, table, turned_table
+from sarah.agents import NAF
+from sarah.reports.race_entry import RaceCurve
+from sarah.simulation.randomisation import SensorConditions
 
 PAGES = [
     *record.ROOT.glob("*.md"),
@@ -80,5 +97,177 @@ def test_the_page_counts_what_its_tables_say() -> None:
 @pytest.mark.parametrize(
     ("values", "verdict"), [([0.31, 0.5], "yes"), ([0.31, 0.6], "in part"), ([0.31, 0.6, 0.2], "no")]
 )
-def test_a_parameter_settles_if_trainings_end_near_the_claimed_value(values: list[float], verdict: str) -> None:
+def test_a_parameter_settles_if_trainings_end_near_the_claim(values: list[float], verdict: str) -> None:
     assert settling(Series(values, name="P1"), 0.4)[1] == verdict
+
+
+def test_a_value_is_good_if_it_is_near_the_best_in_both_engines() -> None:
+    scores = {"pybullet": (0.8, 0.5, 0.79, 0.9, 0.1), "mujoco": (0.8, 0.9, 0.81, 0.79, 0.1)}
+    rows = DataFrame(
+        {"parameter": "V1", "engine": engine, "value": value, "score": score}
+        for engine, values in scores.items()
+        for value, score in zip((-1.0, 0.0, 0.5, 1.0, 2.0), values, strict=True)
+    )
+    assert landscape.good_values(rows) == ({}, {"V1": "\N{MINUS SIGN}1 and 0.5 to 1"})
+    assert landscape.good_values(rows[rows.engine == "mujoco"]) == ({"V1": "0"}, {})
+
+
+def test_what_is_kept_is_the_score_in_the_other_engine() -> None:
+    where = {"task": "balance", "learned_in": [None, "pybullet", "mujoco"]}
+    rows = DataFrame({**where, "pybullet_score": [0.5, 0.8, 0.6], "mujoco_score": [0.6, 0.4, 0.8]})
+    assert list(engines.of_trainings(rows).kept) == approx([0.5, 0.75])
+    assert list(engines.of_sets(rows)["balance"].difference) == approx([0.2])
+
+
+def test_a_difference_is_a_share_of_the_score_at_the_finest() -> None:
+    condition = {"parameters": "shipped", "control_rate_hz": 100, "sensors": "10 ms"}
+    rows = DataFrame({**condition, "setting": ["reference", "standard"], "score": [0.8, 0.6]})
+    (row,) = physics.beside_finest(rows).itertuples()
+    assert (row.setting, row.finest_score, row.difference) == ("standard", 0.8, approx(-0.25))
+
+
+def test_sensors_are_as_wrong_as_said_in_the_direction_drawn() -> None:
+    drawn = SensorConditions(imu_tilt=(0.003, -0.004), pad_noise_density=0.4)
+    two_degrees = math.pi / 90
+    assert askew(drawn).imu_tilt == approx((0.6 * two_degrees, -0.8 * two_degrees))
+    assert askew(drawn).pad_noise_density == 0.4
+    assert biased(SensorConditions(angular_rate_bias=(0.01, -0.02, -0.001))).angular_rate_bias == (0.05, -0.05, -0.05)
+
+
+def test_the_difference_counts_pushes_that_only_one_survives() -> None:
+    """Of 98 pushes the first survives 9 that the other does not, and the other 3: middle 6 / 100, variance 12.64e-4."""
+    ones, others = "s" * 9 + "l" * 3 + "s" * 86, "l" * 9 + "s" * 3 + "s" * 86
+    found = list(difference(ones, others).values())
+    assert found[0] == approx(6 / 98)
+    error = ((13 - 0.36) / 100**2) ** 0.5
+    assert found[1:] == approx((0.06 - 1.96 * error, 0.06 + 1.96 * error))
+    # Nobody knows a difference exactly from 18 pushes: 0 +- 1.96 sqrt(1 / 20 / 20).
+    assert tuple(difference("s" * 18, "s" * 18).values()) == approx((0.0, -1.96 / 20, 1.96 / 20))
+
+
+def training(seed: int, algorithm: str, final: tuple[float, ...], learning: float) -> dict[str, object]:
+    curve = RaceCurve(algorithm, (5, 5), (0.5, final[0]), final, 1, 2.0)
+    return {"task": "stepping", "seed": seed, "algorithm": algorithm, **columns(curve, learning)}
+
+
+def test_a_row_holds_the_curve_of_its_training() -> None:
+    curve = RaceCurve("naf", (5, 10, 10), (0.25, 0.5, 0.75), (0.75, 0.1234), 1, 2.0)
+    row = {"algorithm": "naf", **columns(curve, 0.5)}
+    assert curve_of(row) == curve
+
+
+def test_only_seeds_with_all_algorithms_are_ranked() -> None:
+    rows = [training(0, "naf", (0.5, 0.7), 0.2), training(0, "tpe", (0.6, 0.9), 0.4)]
+    rows += [training(1, "naf", (0.7, 0.9), 0.3), training(1, "tpe", (0.7, 0.9), 0.5)]
+    rows += [training(2, "naf", (0.0, 0.0), 0.0)]
+    naf, tpe = ranked(DataFrame(rows), "stepping").set_index("algorithm").loc[["naf", "tpe"]].to_dict("records")
+    assert (naf["runs"], tpe["runs"]) == (2, 2)
+    assert (round(naf["final_score"], 9), round(tpe["over_naf"], 9)) == (0.7, 0.075)
+    assert (round(naf["score_while_learning"], 9), round(naf["score_while_learning_error"], 9)) == (0.25, 0.05)
+
+
+def course(algorithm: str, seed: int, *returns: float, task: str = "Hopper-v5") -> list[dict]:
+    about = {"task": task, "algorithm": algorithm, "seed": seed}
+    return [{**about, "steps": step, "return": value, "v_over_bound": 0.5} for step, value in enumerate(returns)]
+
+
+def test_a_training_ends_with_the_mean_of_its_last_evaluations() -> None:
+    rows = DataFrame([*course("NAF", 0, 9.0, 1.0, 2.0, 6.0), *course("NAF", 1, 0.0, 5.0, 5.0, 5.0)])
+    assert ends(rows)["return"].tolist() == [3.0, 5.0]
+    (found,) = over_seeds(ends(rows), "task", "algorithm").to_dict("records")
+    assert (found["seeds"], found["return"], found["return_low"], found["return_high"]) == (2, 4.0, 3.0, 5.0)
+
+
+def test_who_is_ahead_has_every_seed_above_those_of_the_other() -> None:
+    returns = {"A": ((3.0, 5.0), (1.0, 2.0)), "B": ((1.0, 2.0), (3.0, 5.0)), "C": ((1.0, 4.0), (3.0, 5.0))}
+    rows = [
+        row
+        for task, of_algorithms in returns.items()
+        for algorithm, values in zip(("NAF", "TD3"), of_algorithms, strict=True)
+        for seed, value in enumerate(values)
+        for row in course(algorithm, seed, value, task=task)
+    ]
+    assert answer_of_ranges(DataFrame(rows)) == (
+        "Every seed of NAF ends above every seed of TD3 on A; every seed of NAF ends below every seed of TD3 on B; the "
+        "ranges of the seeds of NAF and TD3 overlap on C. V comes to 0.50 of its bound at most, on A."
+    )
+
+
+def test_the_interquartile_mean_leaves_out_best_and_worst_seed() -> None:
+    mean, low, high = interquartile_mean([3.0, -1000.0, 1.0, 2.0, 1000.0])
+    assert mean == 2.0 and -1000.0 < low < 1.0 and 3.0 < high < 1000.0
+    assert interquartile_mean([7.0] * 5) == (7.0, 7.0, 7.0)
+
+
+def test_the_probability_of_improvement_is_a_mean_over_tasks() -> None:
+    """Always above on the first task; on the second two of four pairs, and one tie."""
+    middle, low, high = improvement([[5.0, 6.0], [1.0, 3.0]], [[1.0, 2.0], [1.0, 2.0]])
+    assert middle == approx((1.0 + 2.5 / 4) / 2) and low < middle < high <= 1.0
+    assert improvement([[1.0, 1.0]], [[2.0, 2.0]]) == (0.0, 0.0, 0.0)
+
+
+def test_naf_is_above_by_its_interval_few_seeds_are_not_compared() -> None:
+    levels = {"HalfCheetah-v5": (5.0, 1.0), "Hopper-v5": (1.0, 5.0), "Walker2d-v5": (1.0, 1.0)}
+    rows = [
+        row
+        for task, of_task in levels.items()
+        for algorithm, level in zip(("NAF", "TD3"), of_task, strict=True)
+        for seed in range(5)
+        if algorithm == "NAF" or seed < 4
+        for row in course(algorithm, seed, level + 0.1 * seed, task=task)
+    ]
+    rows += course("SAC", 0, 1.0)
+    said = answer(DataFrame(rows))
+    assert said.startswith(
+        "After 15,000 steps NAF is above TD3 on HalfCheetah-v5; below TD3 on Hopper-v5; not told apart from TD3 on "
+        "Walker2d-v5; a seed of NAF is above one of TD3 with a probability of 0."
+    )
+    assert "seeds: 4 of 5 so far)" in said
+    assert "Too few trainings are made so far to compare SAC. Too few" in said
+
+
+def test_a_table_says_how_many_seeds_there_are_so_far() -> None:
+    rows = [row for seed in range(3) for row in course("NAF", seed, 1.0)]
+    rows += [row for seed in range(5) for row in course("DDPG", seed, 1.0)]
+    rows += course("TD3", 0, 1.0)
+    cells = [line.split(" | ")[1:4] for line in four_algorithms(DataFrame(rows)).splitlines()[4:]]
+    assert cells == [["NAF", "3 of 5 so far", "1.0"], ["TD3", "1 of 5 so far", "1.0"], ["DDPG", "5", "1.0"]]
+
+
+def test_each_case_is_a_training_those_that_tell_most_first() -> None:
+    cases = [tuple(case.values()) for case in FULL.cases()]
+    assert len(cases) == len(set(cases))
+    first = cases[: 3 * len(TASKS)]
+    assert {task for task, _, _ in first} == set(TASKS) and {seed for _, _, seed in first} == {0}
+    assert [algorithm for _, algorithm, seed in cases if seed == 5] == list(COMPARED)
+
+
+NOISES = {"DDPG": "0.1", "TD3": "0.1", "TD3, NAF's settings": "0.3", "DDPG, NAF's settings": "0.3"}
+
+
+@pytest.mark.parametrize("name", [*COMPARED, *WITH_NAFS_SETTINGS])
+def test_an_agent_has_the_noise_of_its_documentation_or_of_naf(name: str) -> None:
+    made = agent(name, gym.make("Pendulum-v1"), 0)
+    noise = made.action_noise
+    assert f"sigma=[{NOISES[name]}]" in str(noise) if name in NOISES else noise is None
+    if name in WITH_NAFS_SETTINGS:
+        assert (made.tau, made.policy.net_arch) == (naf("NAF").tau, [256, 256])
+        assert NOISES[name] == str(naf("NAF").exploration_std)
+
+
+def naf(name: str) -> NAF:
+    made = agent(name, gym.make("Pendulum-v1"), 0)
+    assert isinstance(made, NAF)
+    return made
+
+
+def test_what_is_taken_out_or_wider_is_what_the_name_says() -> None:
+    assert [name for name in WIDER if name != f"NAF, noise of {naf(name).exploration_std}"] == []
+    nets = {name: naf(name).q_net for name in WITHOUT}
+    observation, action = th.ones(2, 3), th.ones(2, 1)
+    assert not nets[PUBLISHED].has_w
+    in_targets = nets["NAF, V in the targets"]
+    assert th.equal(in_targets.target_value(observation), in_targets.value(observation)) and in_targets.has_w
+    assert not any(isinstance(layer, nn.LayerNorm) for layer in nets["NAF, no normalisation"].value_net)
+    assert not nets["NAF, no pull"].all_values(observation, action).mu.requires_grad
+    assert nets["NAF, W without weights"].all_values(observation, action).distance.tolist() == [[0.0], [0.0]]

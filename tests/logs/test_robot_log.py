@@ -1,4 +1,4 @@
-"""A log holds what it was given, whatever becomes of the disk or of the process, and holds nobody up."""
+"""A log holds what it was given, whatever becomes of disk, process and file, and all else is one line."""
 
 import itertools
 import multiprocessing
@@ -10,12 +10,15 @@ from typing import Any
 import numpy as np
 import pytest
 from hand_made import rocking
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from logged import NAMED, TARGETS, tick, write
 
 from sarah.control.pattern_generator import Phase
 from sarah.errors import ConfigurationError
 from sarah.logs.chunk_file import ChunkFile
-from sarah.logs.reading import Log
+from sarah.logs.export import cut
+from sarah.logs.reading import MAGIC, Log
 from sarah.logs.robot_log import RobotLog
 from sarah.logs.summary import summarise
 from sarah.logs.topic import Values
@@ -50,7 +53,7 @@ def test_what_was_logged_is_read_to_the_bit(tmp_path: Path) -> None:
     assert log.about["program"] == "a test" and log.end == {"dropped": "0"} and log.problem is None
 
 
-def test_numbers_of_any_type_are_logged_and_what_is_none_is_left_out(tmp_path: Path) -> None:
+def test_numbers_of_any_type_are_logged_and_no_others(tmp_path: Path) -> None:
     path, strange = tmp_path / "a.mcap", (np.float32(0.5), float("nan"), 9)
     with RobotLog(path, {}) as log:
         tick(log, 0, rocking(0)._replace(acceleration=strange))  # type: ignore[arg-type]
@@ -75,9 +78,7 @@ def test_no_log_is_replaced(tmp_path: Path) -> None:
     assert path.read_bytes() == before
 
 
-def test_a_slow_disk_costs_messages_that_are_counted_and_never_time(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_slow_disk_costs_counted_messages_and_never_time(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     disk, written, add = threading.Event(), threading.Semaphore(0), ChunkFile.add
 
     def slow(*arguments: Any) -> None:
@@ -117,7 +118,6 @@ def test_a_full_disk_ends_the_log_with_its_last_whole_chunk(tmp_path: Path, monk
 
 
 def fill(path: Path) -> None:
-    """Log ticks as fast as it goes."""
     with RobotLog(path, {}, waits=True) as log:
         for number in itertools.count():
             tick(log, number)
@@ -135,3 +135,99 @@ def test_a_killed_process_leaves_all_but_the_last_chunk(tmp_path: Path, monkeypa
     summary = summarise(log := Log(path), whole=True)
     assert log.problem is not None and log.problem.startswith("cut at byte")
     assert summary.ticks > 100 and summary.missing.total() == 0 and summary.begin == 0.0
+
+
+Damage = tuple[str, float, bytes]
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write(tmp_path_factory.mktemp("logs") / "whole.mcap", ticks=25)
+
+
+def damaged(content: bytes, how: str, share: float, new: bytes) -> bytes:
+    """A file that was cut, changed or shifted at some place."""
+    place = int(share * len(content))
+    behind = {"cut": b"", "change": new + content[place + len(new) :], "insert": new + content[place:]}
+    return content[:place] + behind[how]
+
+
+@settings(max_examples=60)
+@given(st.lists(st.tuples(st.sampled_from(("cut", "change", "insert")), st.floats(0.0, 0.999), st.binary(min_size=1))))
+def test_a_damaged_log_has_no_message_that_was_not_written(whole: Path, damages: list[Damage]) -> None:
+    content, path = whole.read_bytes(), whole.with_name("damaged.mcap")
+    for how, share, new in damages:
+        content = damaged(content, how, share, new)
+    path.write_bytes(content)
+    written = list(Log(whole).messages())
+    try:
+        summarise(Log(path), whole=True)
+        read = list(Log(path).messages())
+        assert read == [message for message in written if message in read]
+    except ConfigurationError as error:
+        assert str(path) in str(error) and "\n" not in str(error) and len(str(error)) < 1000
+
+
+def test_a_log_cut_anywhere_is_read_to_its_last_whole_chunk(whole: Path) -> None:
+    content, path = whole.read_bytes(), whole.with_name("cut.mcap")
+    counts = []
+    for size in range(len(MAGIC), len(content), 211):
+        path.write_bytes(content[:size])
+        summary = summarise(log := Log(path))
+        assert log.problem is not None and log.problem.startswith("cut at byte") and summary.missing.total() == 0
+        counts.append(summary.ticks)
+    assert counts == sorted(counts) and set(counts) == set(range(26))
+
+
+def test_a_summary_counts_what_was_logged_and_a_part_has_no_gap(whole: Path) -> None:
+    summary = summarise(Log(whole))
+    assert (summary.ticks, summary.begin, summary.end, summary.seconds) == (25, 0.0, 0.24, 0.24)
+    assert (summary.late, summary.worst, summary.dropped, summary.steps) == (1, 0.003, 0, 1)
+    assert summary.ended == {"land": 1} and summary.by_sensors["land"] == 0
+    assert summary.steps_per_second == 1 / 0.24 and summary.observed_reward == 0.8
+    part = whole.with_name("part.mcap")
+    assert cut(Log(whole), 0.1, 0.2, part) == 11
+    summary = summarise(Log(part))
+    assert (summary.ticks, summary.begin, summary.late, summary.missing.total()) == (11, 0.1, 0, 0)
+    assert summary.stepping_seconds == pytest.approx(0.1) and summary.observed_reward is None
+
+
+@pytest.mark.parametrize("data", [b"", b"\xff", b"[]", b"1", b"{}", b"[" * 100_000])
+def test_what_is_no_message_is_refused_in_one_line(data: bytes) -> None:
+    with pytest.raises(ConfigurationError, match="a message of /ticks "):
+        TICKS.decoded(data)
+
+
+def other(path: Path, topic: str, schema: str, data: bytes = b"{}") -> Path:
+    """An MCAP file that another program wrote."""
+    from mcap.writer import Writer
+
+    with path.open("wb") as file:
+        writer = Writer(file)
+        writer.start()
+        channel = writer.register_channel(topic, "json", writer.register_schema(schema, "jsonschema", b"{}"))
+        writer.add_message(channel, 0, data, 0)
+        writer.finish()
+    return path
+
+
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        (("/imu", "Imu"), "is not a log of sarah: its topics are /imu"),
+        (("/ticks", "Tick"), "is not a log of sarah: /ticks has the schema Tick, not sarah.Tick"),
+        (("/ticks", "sarah.Tick"), "a message of /ticks has no seconds"),
+        (("/ticks", "sarah.Tick", b'{"seconds":"0"}'), "a message of /ticks has no state"),
+    ],
+)
+def test_another_programs_file_is_refused(tmp_path: Path, arguments: tuple[str, ...], words: str) -> None:
+    path = other(tmp_path / "other.mcap", *arguments)  # type: ignore[arg-type]  # the last one is of bytes
+    with pytest.raises(ConfigurationError, match=f"{path}:? {words}"):
+        summarise(Log(path))
+
+
+def test_a_value_of_another_type_is_named() -> None:
+    message = TICKS.encoded(0.0, None, 0.0, TARGETS, "stepping", Phase.LIFT, Side.LEFT, 0.0, 0.0, 0.0)
+    for wrong in (b'"0"', b"true", b"1e999", b"NaN", b"null"):
+        with pytest.raises(ConfigurationError, match="tilt of /ticks must be a number, not"):
+            TICKS.decoded(message.replace(b'"tilt":0.0', b'"tilt":' + wrong))

@@ -8,7 +8,7 @@ from contextlib import closing
 from typing import Any
 
 import pytest
-from listening import free_port
+from listening import free_port, running
 from operated import quick
 
 from sarah.drivers.loop import ControlLoop
@@ -50,30 +50,23 @@ def learn(learner: str, config: OperationConfig, connect: Callable[[], Connectio
 
 
 @pytest.mark.parametrize("learner", ["careful", "random"])
-def test_windows_through_a_socket_have_the_bytes_of_those_in_one_process(engine: str, learner: str) -> None:
+def test_windows_through_a_socket_are_those_of_one_process(engine: str, learner: str) -> None:
     pytest.importorskip("zenoh")
     loop, slot, settings = simulated(engine)
     config = dataclasses.replace(quick(minutes=0.15), robot=settings_of(identity_of(settings, "it", True, True)))
     driven = DrivenRobot(loop, slot)
     expected = learn(learner, config, lambda: driven)
     loop.driver.close()
-    endpoint, stop = Endpoint(f"tcp/127.0.0.1:{free_port()}"), threading.Event()
+    endpoint, is_over = Endpoint(f"tcp/127.0.0.1:{free_port()}"), threading.Event()
     loop, slot, _ = simulated(engine)
-    with closing(Server(endpoint, LearnedWith(), slot, None, lambda: not stop.is_set())) as server:
+    with closing(Server(endpoint, LearnedWith(), slot, None, lambda: not is_over.is_set())) as server:
         loop.observers = (*loop.observers, server)
-
-        def run() -> None:
-            while not stop.is_set():
-                loop.tick()
-
-        thread = threading.Thread(target=run)
-        thread.start()
-        try:
-            found = learn(learner, config, lambda: Client(endpoint))
-        finally:
-            stop.set()
-            thread.join()
-            loop.driver.close()
+        with running(loop):
+            try:
+                found = learn(learner, config, lambda: Client(endpoint))
+            finally:
+                is_over.set()
+    loop.driver.close()
     assert found == expected and len(found) > 4
     assert all(window.score is not None for window in found) and any(window.observed_reward > 0.1 for window in found)
     assert any(window.fell for window in found) == (learner == "random")
@@ -118,14 +111,28 @@ def remote(script: Sequence[Any], gone_seconds: float = 60.0) -> tuple[RemoteRob
     return robot, connection, said
 
 
-def test_one_of_two_learners_of_the_same_name_gives_way() -> None:
-    robot, connection, _ = remote([APPLIED, Answer(Outcome.OVERTAKEN, "newer parameters came before it was over")])
-    with pytest.raises(RobotError, match="another process operates the robot for the same session"):
+OVERTAKEN = Answer(Outcome.OVERTAKEN, "newer parameters came before it was over")
+REFUSED = Answer(Outcome.REFUSED, "P1 would change by 1.9")
+
+
+@pytest.mark.parametrize(
+    ("script", "words"),
+    [
+        ([APPLIED, OVERTAKEN], "another process operates the robot for the same session"),
+        ([REFUSED], "the robot refuses the parameters of window 0: P1 would change by 1"),
+        (["nobody"] * 3, "gave up after 0 s"),  # a robot that has gone for long
+        (["breaks"], "gave up after 0 s"),
+        ([Answer(Outcome.ENDED, "the robot has gone")], "gave up after 0 s"),
+    ],
+)
+def test_what_ends_a_session_is_not_asked_again(script: list[Any], words: str) -> None:
+    robot, connection, _ = remote(script, gone_seconds=0.0)
+    with pytest.raises(ConfigurationError if script == [REFUSED] else RobotError, match=words):
         robot.run(SHIPPED)
-    assert len(connection.requests) == 1 and robot.windows == 0
+    assert len(connection.requests) == (script != ["nobody"] * 3) and robot.windows == 0
 
 
-def test_a_window_that_is_lost_is_asked_for_again_and_the_learner_says_why() -> None:
+def test_a_lost_window_is_asked_for_again_and_one_hears_why() -> None:
     lost = [APPLIED, "breaks", "nobody", "nobody", Answer(Outcome.BUSY, "a learner operates the robot")]
     stood = [APPLIED, Answer(Outcome.STOPPED, "asked to stand"), Answer(Outcome.WAITING, "it stands", False)]
     waited = [Answer(Outcome.WAITING, "it stands"), Answer(Outcome.WAITING, "it stands", False)]
@@ -147,20 +154,6 @@ def test_a_window_that_is_lost_is_asked_for_again_and_the_learner_says_why() -> 
         "the robot has the parameters of window 0",
         "window 0: stopping: stale",
     ]
-
-
-@pytest.mark.parametrize("script", [["nobody"] * 3, ["breaks"], [Answer(Outcome.ENDED, "the robot has gone")]])
-def test_a_robot_that_has_gone_for_long_is_given_up(script: list[Any]) -> None:
-    robot, _, _ = remote(script, gone_seconds=0.0)
-    with pytest.raises(RobotError, match="gave up after 0 s"):
-        robot.run(SHIPPED)
-    assert robot.windows == 0
-
-
-def test_parameters_that_the_robot_refuses_end_the_session() -> None:
-    robot, _, _ = remote([Answer(Outcome.REFUSED, "P1 would change by 1.9")])
-    with pytest.raises(ConfigurationError, match="the robot refuses the parameters of window 0: P1 would change by 1"):
-        robot.run(SHIPPED)
 
 
 def test_a_window_of_things_that_are_no_numbers_is_none() -> None:

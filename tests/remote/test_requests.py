@@ -164,7 +164,7 @@ def test_another_controller_or_robot_is_told_apart() -> None:
     assert "dimension torso_mass is 12 and not" in LearnedWith(dimensions={"torso_mass": 12.0}).difference(own)
 
 
-def test_an_answer_comes_back_from_json_and_another_one_is_refused() -> None:
+def test_an_answer_comes_back_from_json_others_are_refused() -> None:
     answer = Answer(Outcome.KEPT, "", True, 3, 0.03, "stepping", "lift")
     assert from_json(Answer, to_json(answer)) == answer
     for text in (

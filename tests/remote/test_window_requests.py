@@ -3,98 +3,61 @@
 from typing import Any
 
 import pytest
-from hand_made import BALANCE, DT, heard
+from hand_made import DT
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from listening import Rig, outcomes
 
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.control.pattern_generator import SteppingParameters
-from sarah.control.supervisor import State, Supervisor
-from sarah.control.watches import SupervisorSettings
-from sarah.drivers.loop import LoopTick
+from sarah.control.supervisor import State
 from sarah.episode.push import PushedConfig
 from sarah.operation.window import FELT
 from sarah.remote.answers import Answer, Measured, Outcome
 from sarah.remote.measurement import Meter
 from sarah.remote.moment import present
-from sarah.remote.requests import Request, WindowTimes
-from sarah.remote.slot import LEARNER_SECONDS, Asked, Slot
-from sarah.robot.reading import SensorReading
+from sarah.remote.slot import LEARNER_SECONDS, Slot
 
-TIMES = WindowTimes(1.0, 2.0)
+MEASURES: dict[str, Any] = {"largest_change": 1.0, "meter": Meter(PushedConfig())}
 
 
-class Rig:
-    """A slot with a meter in a loop, whose supervisor hears a robot that rocks from foot to foot once it has stood."""
-
-    def __init__(self) -> None:
-        enabled = SupervisorSettings(enabled=True)
-        self.supervisor = Supervisor(SteppingParameters(*PAPER_STEPPING), BALANCE, DT, settings=enabled)
-        self.now = 0.0
-        self.slot = Slot(DT, 1.0, Meter(PushedConfig()), lambda: self.now)
-        self.ticks = 0
-
-    def ask(self, kind: str = "window", learner: str = "one", **values: float) -> list[Any]:
-        """Answers, which grow, to something that is asked in one tick."""
-        answers: list[Any] = []
-        is_window = kind == "window"
-        request = Request(kind, values, window=TIMES if is_window else None, learner=learner if is_window else "")
-        self.step(1, Asked(request, answers.append))
-        return answers
-
-    def step(self, ticks: int, *arrived: Asked, still: bool = False, gone: bool = False, lies: bool = False) -> None:
-        for _ in range(ticks):
-            reading: SensorReading | None = None if gone else heard(self.ticks, still or lies)
-            if reading is not None and lies:
-                x, y, z = reading.acceleration
-                reading = reading._replace(acceleration=(x, y + 9.0, z - 8.0))
-            change = self.supervisor.tick(reading)
-            self.slot.tick(
-                LoopTick(self.ticks * DT, reading, 0.0, self.supervisor, change, 0.0), self.supervisor, arrived
-            )
-            self.ticks += 1
-            arrived = ()
+def window(rig: Rig, learner: str = "one", **values: float) -> list[Any]:
+    return rig.ask("window", learner, **values)
 
 
 @pytest.fixture
 def rig() -> Rig:
-    """A robot that steps."""
-    rig = Rig()
+    rig = Rig(**MEASURES)
     rig.step(300)
     return rig
 
 
-def outcomes(answers: list[Any]) -> list[str]:
-    return ["window" if isinstance(one, Measured) else one.outcome.value for one in answers]
-
-
-def test_a_window_settles_and_is_measured_from_the_next_swap_of_legs_on(rig: Rig) -> None:
-    answers = rig.ask(V1=0.5)
+def test_a_window_settles_and_is_measured_from_a_swap_of_legs_on(rig: Rig) -> None:
+    answers = window(rig, V1=0.5)
     asked = rig.ticks - 1
     rig.step(400)
-    applied, window = answers
-    assert applied.outcome is Outcome.APPLIED and not applied.is_final and applied.tick == window.tick
+    applied, found = answers
+    assert applied.outcome is Outcome.APPLIED and not applied.is_final and applied.tick == found.tick
     assert present(rig.supervisor)[5] == 0.5
-    assert window.ticks == 300 and window.began == pytest.approx(window.tick * DT) and window.tick > asked
-    assert window.seconds == pytest.approx((window.tick + 301 - asked) * DT)
-    assert 0.3 < window.observed_reward < 1.0 and window.score is None and not window.fell and not window.reason
-    felt = dict(zip(FELT, window.felt, strict=True))
+    assert found.ticks == 300 and found.began == pytest.approx(found.tick * DT) and found.tick > asked
+    assert found.seconds == pytest.approx((found.tick + 301 - asked) * DT)
+    assert 0.3 < found.observed_reward < 1.0 and found.score is None and not found.fell and not found.reason
+    felt = dict(zip(FELT, found.felt, strict=True))
     assert felt["steps_per_second"] == pytest.approx(3.0, abs=0.6) and felt["a_z_mean"] == pytest.approx(9.81, abs=0.1)
     assert rig.slot.is_idle
 
 
-def test_a_robot_that_stopped_by_itself_steps_again_after_a_second_of_standing(rig: Rig) -> None:
+def test_a_robot_that_stopped_steps_again_after_a_second(rig: Rig) -> None:
     rig.supervisor.stand("a fault")
     rig.step(100)
     assert rig.supervisor.is_waiting
-    answers = rig.ask(V1=0.5)
+    answers = window(rig, V1=0.5)
     rig.step(402)
     assert outcomes(answers) == ["applied", "window"] and answers[1].ticks == 400
     assert rig.supervisor.state is State.STEPPING
 
 
-def test_one_that_stops_within_a_window_is_measured_to_its_end_and_told(rig: Rig) -> None:
-    answers = rig.ask(V1=0.5)
+def test_one_that_stops_is_measured_to_the_end_and_told(rig: Rig) -> None:
+    answers = window(rig, V1=0.5)
     rig.step(50)
     rig.step(350, gone=True)
     assert outcomes(answers) == ["applied", "window"]
@@ -103,7 +66,7 @@ def test_one_that_stops_within_a_window_is_measured_to_its_end_and_told(rig: Rig
 
 def test_parameters_that_were_put_back_end_their_window(rig: Rig) -> None:
     rig.step(500)  # the first ones are proven
-    answers = rig.ask(P1=2.0, P2=2.0)
+    answers = window(rig, P1=2.0, P2=2.0)
     while not answers:
         rig.step(1)
     rig.step(300, still=True)
@@ -113,12 +76,12 @@ def test_parameters_that_were_put_back_end_their_window(rig: Rig) -> None:
     assert present(rig.supervisor)[:2] == PAPER_STEPPING[:2]
 
 
-def test_somebody_who_lets_the_robot_stand_stops_the_learner_until_it_is_let_go(rig: Rig) -> None:
-    answers = rig.ask(V1=0.5)
+def test_who_lets_the_robot_stand_stops_the_learner(rig: Rig) -> None:
+    answers = window(rig, V1=0.5)
     rig.step(100)
     assert outcomes(rig.ask("stand")) == ["applied"] and outcomes(answers) == ["applied", "stopped"]
     rig.step(100)
-    again = rig.ask(V1=0.5)
+    again = window(rig, V1=0.5)
     rig.step(300)
     assert outcomes(again) == ["waiting"] and rig.supervisor.is_waiting
     assert again[0].reason == "somebody asked the robot to stand: sarah-push --step lets it go on"
@@ -127,34 +90,32 @@ def test_somebody_who_lets_the_robot_stand_stops_the_learner_until_it_is_let_go(
     assert outcomes(again)[-2:] == ["applied", "window"]
 
 
-def test_the_robot_is_its_learners_until_that_is_silent_or_leaves_it(rig: Rig) -> None:
-    first = rig.ask(V1=0.5)
-    assert outcomes(rig.ask(learner="two", V1=0.4)) == ["busy"] == outcomes(rig.ask("push", V1=0.4))
-    again = rig.ask(V1=0.6)
+def test_the_robot_is_its_learners_until_that_leaves_it(rig: Rig) -> None:
+    first = window(rig, V1=0.5)
+    assert outcomes(window(rig, learner="two", V1=0.4)) == ["busy"] == outcomes(rig.ask("push", V1=0.4))
+    again = window(rig, V1=0.6)
     rig.step(400)
     assert outcomes(first)[-1] == "overtaken" and outcomes(again)[-1] == "window"
     assert outcomes(rig.ask("push", V1=0.4)) == ["busy"]
     rig.now += LEARNER_SECONDS
-    two = rig.ask(learner="two", V1=0.4)
+    two = window(rig, learner="two", V1=0.4)
     rig.step(400)
-    assert outcomes(two)[-1] == "window" and outcomes(rig.ask(V1=0.5)) == ["busy"]
-    left: list[Any] = []
-    rig.step(100, Asked(Request("push", {"V1": 0.3}, learner="two"), left.append))
-    one = rig.ask(V1=0.5)
+    assert outcomes(two)[-1] == "window" and outcomes(window(rig, V1=0.5)) == ["busy"]
+    left = rig.ask("push", "two", V1=0.3)
+    rig.step(99)
+    one = window(rig, V1=0.5)
     rig.step(400)
     assert outcomes(left) == ["applied", "overtaken"] and outcomes(one)[-1] == "window"
 
 
 @pytest.mark.parametrize("somebody_objects", [False, True])
-def test_a_robot_that_fell_steps_again_once_it_has_been_upright_and_nobody_objects(
-    rig: Rig, somebody_objects: bool
-) -> None:
-    answers = rig.ask(V1=0.5)
+def test_a_robot_that_fell_steps_again_if_nobody_objects(rig: Rig, somebody_objects: bool) -> None:
+    answers = window(rig, V1=0.5)
     rig.step(200, lies=True)
     assert outcomes(answers) == ["applied", "window"] and answers[1].fell and rig.supervisor.has_fallen
     if somebody_objects:
         assert outcomes(rig.ask("stand")) == ["refused"]
-    again = rig.ask(V1=0.5)
+    again = window(rig, V1=0.5)
     rig.step(150, still=True)
     assert outcomes(again) == ["waiting"] and rig.supervisor.has_fallen
     if somebody_objects:
@@ -165,10 +126,10 @@ def test_a_robot_that_fell_steps_again_once_it_has_been_upright_and_nobody_objec
     assert outcomes(again)[-2:] == ["applied", "window"]
 
 
-def test_a_learner_that_has_gone_moves_no_robot_that_is_put_up_later(rig: Rig) -> None:
-    rig.ask(V1=0.5)
+def test_a_learner_that_has_gone_moves_no_robot_put_up_later(rig: Rig) -> None:
+    window(rig, V1=0.5)
     rig.step(200, lies=True)
-    again = rig.ask(V1=0.5)
+    again = window(rig, V1=0.5)
     rig.step(600, lies=True)
     assert outcomes(again) == ["waiting", "waiting"] and again[1].is_final and rig.slot.is_idle
     rig.step(500, still=True)
@@ -178,13 +139,13 @@ def test_a_learner_that_has_gone_moves_no_robot_that_is_put_up_later(rig: Rig) -
     assert outcomes(rig.ask("push", V1=0.4)) == ["applied"] and rig.supervisor.has_fallen
 
 
-def test_the_time_for_which_a_learner_waits_counts_from_when_it_asked_first(rig: Rig) -> None:
-    rig.ask(V1=0.5)
+def test_the_time_of_waiting_counts_from_the_first_request_on(rig: Rig) -> None:
+    window(rig, V1=0.5)
     rig.step(200, lies=True)
     first = rig.ticks
-    rig.ask(V1=0.5)
+    window(rig, V1=0.5)
     rig.step(600, lies=True)
-    again = rig.ask(V1=0.5)
+    again = window(rig, V1=0.5)
     rig.step(800, still=True)
     assert again[-1].seconds == pytest.approx((again[-1].tick + again[-1].ticks + 1 - first) * DT)
 
@@ -195,11 +156,11 @@ class Lying:
     position, has_fallen = (0.0, 0.0, 0.9), True
 
 
-def test_a_robot_that_lies_is_measured_once_somebody_has_put_it_up(rig: Rig) -> None:
+def test_a_robot_that_lies_is_measured_once_it_is_put_up(rig: Rig) -> None:
     truth = Lying()
     rig.slot = Slot(DT, 1.0, Meter(PushedConfig(), truth))
     rig.step(110)
-    answers = rig.ask(V1=0.5)
+    answers = window(rig, V1=0.5)
     rig.step(300)
     assert outcomes(answers) == ["waiting"] and answers[0].reason.startswith("the robot has fallen")
     truth.has_fallen = False
@@ -212,8 +173,7 @@ def test_a_robot_that_lies_is_measured_once_somebody_has_put_it_up(rig: Rig) -> 
 
 def test_a_robot_without_a_meter_measures_nothing() -> None:
     rig = Rig()
-    rig.slot = Slot(DT)
-    (answer,) = rig.ask(V1=0.5)
+    (answer,) = window(rig, V1=0.5)
     assert isinstance(answer, Answer) and answer.reason == "this robot measures no windows"
 
 
@@ -223,11 +183,11 @@ EVENTS = ("one", "one", "two", "push", "stand", "step", "still", "gone", "late",
 @settings(max_examples=20)
 @given(st.lists(st.sampled_from(EVENTS), max_size=25))
 def test_whoever_asks_gets_one_last_answer_whatever_happens(events: list[str]) -> None:
-    rig, asked = Rig(), list[list[Any]]()
+    rig, asked = Rig(**MEASURES), list[list[Any]]()
     rig.step(150)
     for event in events:
         if event in ("one", "two"):
-            asked.append(rig.ask(learner=event, V1=round(0.01 * len(asked), 2)))
+            asked.append(window(rig, learner=event, V1=round(0.01 * len(asked), 2)))
         elif event == "push":
             asked.append(rig.ask("push", V1=round(0.01 * len(asked), 2)))
         elif event in ("stand", "step"):

@@ -1,21 +1,129 @@
-"""What a training recommends after its episodes."""
+"""What searches ask for, and what a training recommends after its episodes."""
 
 import dataclasses
 import math
 from itertools import combinations
 
 import numpy as np
+import optuna
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from laboratory import RESULT
 
-from sarah.control.parameters import Parameters
+from sarah.control.parameters import Box, Parameter, Parameters
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING, Task
 from sarah.errors import LearningError
+from sarah.runs.agent_settings import AgentSettings, EvolutionSettings, settings_of
+from sarah.training.optimisers import OPTIMISERS
 from sarah.training.plan import Stage
 from sarah.training.recommendation import DISTINCT, Tried, merit
+from sarah.training.search import Search, Start
+
+BEST = np.array([0.3, -0.4])
+PLAIN = Start()
+
+
+def box_of(dimensions: int) -> Box:
+    """A box of parameters between 0 and 4."""
+    return Box(tuple(Parameter(f"p{index}", 0.0, 4.0, "", "a number", "") for index in range(dimensions)))
+
+
+def make_search(algo: str, settings: AgentSettings, dimensions: int, seed: int, start: Start = PLAIN) -> Search:
+    return OPTIMISERS[algo](settings, box_of(dimensions), seed, start)
+
+
+def worth_of(parameters: Parameters) -> float:
+    return 1.0 - float(np.square(np.array(parameters) / 2.0 - 1.0 - BEST).sum())
+
+
+def searched(algo: str, seed: int, episodes: int, in_flight: int = 3) -> tuple[list[Parameters], Parameters]:
+    """Parameters tried, and the choice in the end."""
+    search = make_search(algo, settings_of(algo)(), 2, seed)
+    asked: list[Parameters] = []
+    for told in range(episodes):
+        while len(asked) < min(episodes, told + in_flight) and search.ready():
+            asked.append(search.ask())
+        search.tell(asked[told], worth_of(asked[told]))
+    return asked, search.choice()
+
+
+@pytest.mark.parametrize("algo", OPTIMISERS)
+def test_searches_find_what_is_good_within_the_box(algo: str) -> None:
+    """They repeat with their seed, and leave Optuna as talkative as before."""
+    before = optuna.logging.get_verbosity()
+    optuna.logging.set_verbosity(optuna.logging.ERROR)
+    asked, choice = searched(algo, seed=1, episodes=20 if algo == "gp" else 40)
+    assert optuna.logging.get_verbosity() == optuna.logging.ERROR
+    optuna.logging.set_verbosity(before)
+    assert all(box_of(2).checked(parameters) == parameters for parameters in (*asked, choice))
+    assert worth_of(choice) > 0.9
+    if algo != "random":
+        late, early = (np.median([worth_of(parameters) for parameters in part]) for part in (asked[-10:], asked[:10]))
+        assert late > early
+    again, other = (searched(algo, seed, episodes=9)[0] for seed in (1, 2))
+    assert again == asked[:9] != other
+
+
+@pytest.mark.parametrize("population", [2, 13])
+def test_a_generation_is_told_before_the_next_is_asked_for(population: int) -> None:
+    search, generation = make_search("cma-es", EvolutionSettings(population=population), 2, 0), []
+    while search.ready():
+        generation.append(search.ask())
+    assert len(generation) == population
+    for parameters in generation:
+        assert not search.ready()
+        search.tell(parameters, worth_of(parameters))
+    assert search.ready()
+
+
+def test_the_first_generation_has_the_deviation_that_is_set() -> None:
+    for deviation in (0.05, 0.2):
+        search = make_search("cma-es", EvolutionSettings(deviation=deviation, population=500), 4, 0)
+        actions = np.array([box_of(4).scaled(search.ask()) for _ in range(500)])
+        assert actions.std() == pytest.approx(deviation, rel=0.05)
+
+
+@pytest.mark.parametrize("first", [(2.0,) * 4, (0.0, 1.0, 2.5, 4.0)])
+@pytest.mark.parametrize("algo", OPTIMISERS)
+def test_the_first_parameters_are_those_that_are_given(algo: str, first: Parameters) -> None:
+    search = make_search(algo, settings_of(algo)(), 4, 5, Start(first))
+    assert search.ask() == pytest.approx(first) != search.ask()
+    assert make_search(algo, settings_of(algo)(), 4, 5).ask() != pytest.approx(first)
+
+
+@pytest.mark.parametrize("slots", [1, 4])
+@pytest.mark.parametrize("algo", ["gp", "tpe"])
+def test_a_model_chooses_from_the_end_of_the_warm_up_on(algo: str, slots: int) -> None:
+    """Its choices follow from the returns, and the parameters of the warm-up do not."""
+    warm_up = 8
+
+    def asked(sign: float) -> list[Parameters]:
+        search = make_search(algo, settings_of(algo)(), 2, 3, Start(warm_up=warm_up, slots=slots))
+        tries: list[Parameters] = []
+        for index in range(warm_up + 1):
+            if index >= slots:
+                oldest = tries[index - slots]
+                search.tell(oldest, sign * worth_of(oldest))
+            tries.append(search.ask())
+        return tries
+
+    good, bad = asked(1.0), asked(-1.0)
+    assert good[:warm_up] == bad[:warm_up] and good[warm_up] != bad[warm_up]
+
+
+@pytest.mark.filterwarnings("error")
+@pytest.mark.parametrize("dimensions", [1, 20])
+@pytest.mark.parametrize("algo", OPTIMISERS)
+def test_any_returns_are_learned_from(algo: str, dimensions: int) -> None:
+    """Two values, all equal, and as large as a float can be."""
+    for return_of in (lambda x: float(x[0] > 2.0), lambda x: 0.0, lambda x: 1e300 * (x[0] - 2.0)):
+        search = make_search(algo, settings_of(algo)(), dimensions, 0)
+        for _ in range(10):
+            search.tell(parameters := search.ask(), return_of(parameters))
+        assert box_of(dimensions).checked(search.choice())
+
 
 CHOICE = (1.0, 1.0, 1.0, 1.0, 1.0)
 WIDTH = 2.0
@@ -37,24 +145,6 @@ def after(episodes: Tries, task: Task = STEPPING) -> Tried:
 def distance(first: Parameters, second: Parameters) -> float:
     """Distance, in parameters scaled to [-1, 1]."""
     return 2.0 * math.dist(first, second) / WIDTH
-
-
-def test_a_good_neighbourhood_beats_one_lucky_episode() -> None:
-    lucky = (around(0.2, 0.2, 0.2, 0.2, 0.2), 0.92)
-    centre = around(1.6, 1.6, 1.6, 1.6, 1.6)
-    good = [(around(*centre, offset=0.01 * step), 0.85) for step in range(-2, 3)]
-    unlucky = (around(0.2, 0.2, 0.2, 0.2, 0.25), 0.1)
-    assert distance(after([lucky, unlucky, *good]).best(CHOICE), centre) < 0.02
-
-
-@pytest.mark.parametrize("top", [(0.7, 1.3, 1.0, 0.9, 1.2), (2.0, 1.3, 1.0, 0.9, 1.2)])
-def test_the_best_may_lie_between_episodes_and_at_an_end(top: Parameters) -> None:
-    places = np.random.default_rng(0).uniform(0.0, WIDTH, (300, 5))
-    near = [(tuple(map(float, place)), 1.0 - 0.5 * math.dist(place, top) ** 2 / WIDTH) for place in places]
-    near = [(place, worth) for place, worth in near if worth > 0.3]
-    best = after(near).best(CHOICE)
-    assert distance(best, top) < min(distance(place, top) for place, _ in near)
-    assert min(best) >= 0.0 and max(best) <= WIDTH
 
 
 def test_what_known_disturbances_decide_is_no_merit() -> None:
@@ -117,26 +207,6 @@ def test_whatever_was_tried_what_is_best_can_be_simulated(tried: Tries) -> None:
     for worth in (math.nan, math.inf, -math.inf, 1e308, -1e308):
         spoilt = [(parameters, worth if index % 2 else 0.5) for index, (parameters, _) in enumerate(tried)]
         assert all(map(math.isfinite, after(spoilt).best(CHOICE)))
-
-
-def test_a_crest_is_found_though_single_episodes_say_little() -> None:
-    """Merit falls with the distance from a place, and noise as large as the differences hides it: five trainings."""
-    crest, found = np.full(3, 1.2), []
-    for seed in range(5):
-        generator = np.random.default_rng(seed)
-        places = generator.uniform(0.4, 2.0, (200, 5))
-        merits = 0.8 - 0.5 * np.linalg.norm(places[:, :3] - crest, axis=1) + generator.normal(scale=0.2, size=200)
-        tried = [(tuple(map(float, place)), float(merit)) for place, merit in zip(places, merits, strict=True)]
-        best = after(tried).best(CHOICE)
-        luckiest, _ = max(tried, key=lambda episode: episode[1])
-        found.append([np.linalg.norm(np.array(place[:3]) - crest) for place in (best, luckiest)])
-    of_best, of_luckiest = np.mean(found, axis=0)
-    assert of_best < 0.6 * of_luckiest
-
-
-def test_a_long_training_is_judged_by_its_last_500_episodes() -> None:
-    old, late = random_episodes(200), [(parameters, merit) for parameters, merit in random_episodes(700)[200:]]
-    assert after([*old, *late]).best(CHOICE) == after(late).best(CHOICE)
 
 
 def test_what_is_no_gait_has_less_merit() -> None:

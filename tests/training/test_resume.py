@@ -1,14 +1,12 @@
 """An interrupted training goes on exactly: whatever learns, wherever it was cut, whatever is left of its journal."""
 
-import logging
-import zipfile
 from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any
 
 import pytest
-from interrupted import EPISODE, go_on
-from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+from endurance.kills import left_behind
+from interrupted import EPISODE, content, go_on, trained
 
 from sarah.agents import LocalNAF, corrections
 from sarah.episode.tasks import TASKS
@@ -42,20 +40,6 @@ class Counting(Executor):
         return Workers().submit(function, *subjects)
 
 
-def everything(folder: RunFolder) -> dict[str, Any]:
-    """All that a training leaves behind, but for the time of day."""
-    names = ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json")
-    found: dict[str, Any] = {name: (folder.path / name).read_bytes() for name in names}
-    if folder.model_path.exists():
-        archive = zipfile.ZipFile(folder.model_path)
-        found |= {name: archive.read(name) for name in archive.namelist() if name.endswith(".pth")}
-    (events,) = folder.path.glob("events.out.tfevents.*")
-    curves = EventAccumulator(str(events), size_guidance={"scalars": 0})
-    curves.Reload()
-    found |= {tag: [(event.step, event.value) for event in curves.Scalars(tag)] for tag in curves.Tags()["scalars"]}
-    return found
-
-
 @pytest.mark.parametrize(
     ("algo", "task", "cuts"),
     [("naf", "balance", (3, 12)), ("sac", "stepping", (9,)), ("cma-es", "balance", (2, 14)), ("gp", "stepping", (10,))],
@@ -66,22 +50,20 @@ def test_an_interrupted_training_ends_as_without(algo: str, task: str, cuts: tup
     config = TrainingConfig(task, algo, episodes=16, seed=7, slots=2, agent=agent, episode=episode)
     whole = RunFolder.create(tmp_path / "whole", config)
     learned = train(config, whole)
-    expected = everything(whole)
-    assert len(expected["episode/score"]) == 16 and ("policy.pth" in expected) == (algo in AGENTS)
+    expected = left_behind(whole.path)
+    assert list(expected["episode/score"])[-1][0] == 16 and ("policy.pth" in expected) == (algo in AGENTS)
     cut = RunFolder.create(tmp_path / "cut", config)
     for results in cuts:
         go_on(cut, results)
         assert not cut.is_finished
     assert train(config, cut) == learned
-    assert everything(cut) == expected
+    assert left_behind(cut.path) == expected
 
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
     config = TrainingConfig(episodes=16, seed=2, slots=3, agent=NAFSettings(learning_starts=6), episode=EPISODE)
-    folder = RunFolder.create(tmp_path_factory.mktemp("runs") / "whole", config)
-    train(config, folder)
-    return folder
+    return trained(tmp_path_factory.mktemp("runs") / "whole", config)
 
 
 def begun_with(path: Path, whole: RunFolder, journal: bytes) -> RunFolder:
@@ -89,18 +71,6 @@ def begun_with(path: Path, whole: RunFolder, journal: bytes) -> RunFolder:
     begun = RunFolder.create(path, whole.config())
     begun.journal_path.write_bytes(journal)
     return begun
-
-
-@pytest.mark.parametrize("share", [0.03, 0.5, 0.999])
-def test_a_journal_cut_at_any_byte_is_enough(share: float, whole: RunFolder, tmp_path: Path, caplog: Any) -> None:
-    content = whole.journal_path.read_bytes()
-    cut = content[: int(share * len(content))]
-    begun = begun_with(tmp_path / "cut", whole, cut)
-    with caplog.at_level(logging.WARNING):
-        train(whole.config(), begun)
-    assert ("damaged rows: 1" in caplog.text) == (b"\n" in cut and not cut.endswith(b"\n"))
-    assert everything(begun) == everything(whole)
-    assert sorted(begun.journal_path.read_bytes().splitlines()) == sorted(content.splitlines())
 
 
 def test_a_damaged_row_costs_its_simulation_only(whole: RunFolder, tmp_path: Path, caplog: Any) -> None:
@@ -116,21 +86,21 @@ def test_a_damaged_row_costs_its_simulation_only(whole: RunFolder, tmp_path: Pat
     begun = begun_with(tmp_path / "damaged", whole, b"".join(lines))
     train(whole.config(), begun, counting)
     assert counting.run == 1 and "damaged rows: 1; what they have is asked again" in caplog.text
-    assert everything(begun) == everything(whole)
+    assert left_behind(begun.path) == left_behind(whole.path)
 
 
 def test_a_training_that_does_not_repeat_is_not_resumed(whole: RunFolder, tmp_path: Path) -> None:
     """As on another processor, whose arithmetic differs in the last bit."""
     begun = RunFolder.create(tmp_path / "begun", whole.config())
     go_on(begun, 20)
-    before = {path.name: path.read_bytes() for path in begun.path.iterdir()}
+    before = content(begun)
     with pytest.MonkeyPatch.context() as another_processor:
         another_processor.setattr(plan, "seeds_of", lambda seed: seeds_of(seed + 1))
         with pytest.raises(ResumeError, match="cannot be resumed here: it does not repeat"):
             train(whole.config(), begun)
-    assert {path.name: path.read_bytes() for path in begun.path.iterdir()} == before
+    assert content(begun) == before
     train(whole.config(), begun)
-    assert everything(begun) == everything(whole)
+    assert left_behind(begun.path) == left_behind(whole.path)
 
 
 def test_two_trainings_do_not_share_a_run_folder(whole: RunFolder, tmp_path: Path) -> None:

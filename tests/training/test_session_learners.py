@@ -1,4 +1,4 @@
-"""The learners of a session, on robots that are formulas."""
+"""The learners of a session, and the one that recognises its robot, on robots that are formulas."""
 
 import dataclasses
 import math
@@ -6,11 +6,16 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from known_robots import LOGS, KnownRobot, top
 from operated import START, FormulaRobot
 
+from sarah.errors import ConfigurationError
 from sarah.operation.settings import BOX, SHIPPED, Parameters
 from sarah.operation.window import Window
+from sarah.recognition.learning import learn
+from sarah.recognition.recognition import Kind
 from sarah.training.careful import CarefulSearch
+from sarah.training.recognise import operate_recognised
 from sarah.training.session_learners import LEARNERS
 
 TOP = START + 0.15 * np.array([1, -1, 1, 1, -1, 1, -1, 1, -1])
@@ -128,3 +133,52 @@ def test_learners_begin_as_given_and_do_not_see_the_score(learner: str) -> None:
     assert LEARNERS[learner](seen, SHIPPED, 0) == LEARNERS[learner](blind, SHIPPED, 0)
     assert seen.seen[0].parameters == SHIPPED
     assert ({window.parameters for window in seen.seen} == {SHIPPED}) == (learner == "none")
+
+
+NEAREST = learn(LOGS)
+
+
+@pytest.mark.parametrize("kind", ["nearest", "classes", "network", "model"])
+def test_a_known_robot_gets_its_parameters_after_one_window(kind: Kind) -> None:
+    robot = KnownRobot(1.0)
+    operate_recognised(robot, SHIPPED, 0, learn(LOGS, kind))
+    assert robot.seen[0].parameters == SHIPPED and robot.seen[1].parameters == top(1.0)
+    assert robot.mean_reward(0.2) > 0.9
+
+
+def test_nothing_is_pushed_where_the_shipped_ones_are_good() -> None:
+    robot = KnownRobot(0.0)
+    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    assert not {top(-1.0), top(1.0)} & {window.parameters for window in robot.seen}
+    assert robot.mean_reward() > 0.92
+
+
+def test_an_unknown_robot_learns_on_from_the_shipped_ones() -> None:
+    robot = KnownRobot(6.0)
+    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    assert not {top(-1.0), top(1.0)} & {window.parameters for window in robot.seen}
+    assert len({window.parameters for window in robot.seen}) > 3
+
+
+def test_a_set_that_is_worth_less_than_believed_goes() -> None:
+    robot = KnownRobot(1.0, best=0.3)
+    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    assert robot.seen[1].parameters == top(1.0)
+    assert sum(window.parameters == top(1.0) for window in robot.seen) <= 2
+
+
+def test_a_robot_that_changes_is_recognised_anew() -> None:
+    robot = KnownRobot(-1.0, 4.0, then=1.0, change=2.0)
+    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    first = next(window for window in robot.seen if window.parameters == top(1.0))
+    assert 120.0 <= first.begin <= 120.0 + 5 * 6.0
+    assert robot.mean_reward(2.6) > 0.9
+
+
+def test_another_robot_than_those_of_the_logs_is_refused() -> None:
+    robot = KnownRobot(0.0)
+    robot.config = type(robot.config)(measure_seconds=5.0)
+    with pytest.raises(ConfigurationError, match=r"the robot has measure_seconds 5\.0, not 4\.0"):
+        operate_recognised(robot, SHIPPED, 0, NEAREST)
+    with pytest.raises(ConfigurationError, match="begins with the parameters that robots are recognised with"):
+        operate_recognised(KnownRobot(0.0), top(1.0), 0, NEAREST)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 import torch
-from interrupted import EPISODE
+from interrupted import EPISODE, trained
 from laboratory import COARSE_PHYSICS
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
@@ -37,9 +37,7 @@ SHORT = TrainingConfig(episodes=16, slots=1, seed=3, episode=EpisodeConfig(time_
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
-    folder = RunFolder.create(tmp_path_factory.mktemp("runs") / "first", SHORT)
-    train(SHORT, folder)
-    return folder
+    return trained(tmp_path_factory.mktemp("runs") / "first", SHORT)
 
 
 def test_run_folder_holds_what_it_should(run: RunFolder) -> None:
