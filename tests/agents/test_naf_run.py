@@ -189,3 +189,44 @@ def test_paper_networks():
     np.testing.assert_array_equal(model.predict(np.zeros(16, np.float32))[0], np.ones(5))
     model.learn(10)
     assert model.action_space.contains(model.predict(np.zeros(16, np.float32))[0])
+
+
+class Hill(Steady):
+    """One action an episode; the top is at (0.5, -0.3)."""
+
+    def __init__(self, scale: float, constant: float):
+        super().__init__(spaces.Box(-1, 1, (2,)))
+        self.scale, self.constant = scale, constant
+
+    def step(self, action):
+        observation, *_ = super().step(action)
+        height = 1 - 2 * np.square(action - [0.5, -0.3]).sum()
+        return observation, float(self.scale * height + self.constant), True, False, {}
+
+
+@pytest.mark.filterwarnings("ignore:rewards of")
+def test_the_size_of_rewards_decides_how_fast_mu_learns():
+    """Low rewards push it away, high ones make the parabola flat, small ones make it steep."""
+
+    def error(scale=1.0, constant=0.0) -> float:
+        arguments: Any = {**SMALL, "gamma": 0.0, "batch_size": 32, "policy_kwargs": dict(net_arch=[32])}
+        model = NAF("MlpPolicy", Hill(scale, constant), **arguments).learn(160)
+        return float(np.linalg.norm(model.predict(np.zeros(3, np.float32))[0] - [0.5, -0.3]))
+
+    assert error() < 0.2
+    assert min(error(constant=-100), error(constant=100), error(scale=0.01)) > 0.35
+
+
+def test_w_depends_on_the_exploration_where_v_does_not():
+    """W is the mean of what was done near mu, and V the top of the parabola: about 0 here, whatever was done."""
+    observation = th.zeros(1, 3)
+
+    def values(std: float) -> tuple[float, float]:
+        arguments: Any = {**SMALL, "gamma": 0.0, "batch_size": 32, "policy_kwargs": dict(net_arch=[32])}
+        space = spaces.Box(-1, 1, (1,))
+        model = NAF("MlpPolicy", Steady(space), exploration_std=std, **{**arguments, "learning_starts": 0}).learn(250)
+        with th.no_grad():
+            return model.q_net.value(observation).item(), model.q_net.target_value(observation).item()
+
+    (narrow_v, narrow_w), (wide_v, wide_w) = values(0.1), values(0.5)
+    assert wide_v - narrow_v > -0.05 and wide_w - narrow_w < -0.08

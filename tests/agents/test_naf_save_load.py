@@ -95,3 +95,13 @@ def test_same_seed_same_bits(algorithm, n_envs):
     first = trained_weights(algorithm, 7, n_envs)
     np.testing.assert_array_equal(first, trained_weights(algorithm, 7, n_envs))
     assert (first != trained_weights(algorithm, 8, n_envs)).any()
+
+
+def test_save_load_of_local_naf(tmp_path):
+    std = LinearSchedule(0.4, 0.2, 0.5)
+    model = make_model(LocalNAF, elite_share=0.3, elite_std=std, elite_draws=4, first_action_centre=True).learn(30)
+    model.save(tmp_path / "model")
+    loaded = LocalNAF.load(tmp_path / "model", env=make_vec_env("Pendulum-v1"))
+    assert (loaded.elite_draws, loaded.first_action_centre) == (4, True)
+    assert loaded.elite_share_schedule(0.5) == 0.3 and loaded.elite_std_schedule(0.75) == pytest.approx(0.3)
+    assert loaded.learn(30, reset_num_timesteps=False).num_timesteps == 60

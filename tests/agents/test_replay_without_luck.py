@@ -14,7 +14,7 @@ from stable_baselines3.common.env_util import make_vec_env
 from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import VecNormalize
 
-from sarah.agents import LocalNAF, RankReplayBuffer
+from sarah.agents import LocalNAF, RankReplayBuffer, buffers
 from sarah.agents.corrections import FEWEST_EPISODES, MOST_FITTED, PENALTY, bounded, corrected
 
 BOX = spaces.Box(-1, 1, (2,))
@@ -227,3 +227,17 @@ def test_the_newest_of_many_are_fitted_and_all_are_corrected() -> None:
     assert without.mean() == pytest.approx(returns.mean()) and without[:500].std() < 0.5 * returns[:500].std()
     other = np.concatenate([-returns[:500], returns[500:]])
     np.testing.assert_array_equal(corrected(other, disturbances)[500:], without[500:])
+
+
+def test_a_correction_is_made_once_after_an_addition(monkeypatch: pytest.MonkeyPatch) -> None:
+    calls: Any = []
+    monkeypatch.setattr(buffers, "corrected", lambda *args: calls.append(len(args[0])) or corrected(*args))
+    buffer = played(30)
+    for _ in range(3):
+        buffer.sample(4)
+        buffer.best_action()
+        buffer.draw_near_best(0.1, 4)
+    assert calls == [30]
+    add(buffer, 30, (0, 0), 1.0, disturbances=[0.0, 0.0])
+    buffer.best_action()
+    assert calls == [30, 31]
