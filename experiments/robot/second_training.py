@@ -80,6 +80,11 @@ def _scores(rows: DataFrame) -> np.ndarray:
     return np.array([[float(score) for score in cell.split()] for cell in rows.scores])
 
 
+def _engines(rows: DataFrame) -> dict[str, DataFrame]:
+    """The rows of each engine in which trainings have been judged; all that they are compared with comes before."""
+    return {engine: group for engine, group in groups(rows, "engine").items() if (group.kind != COMPARED).any()}
+
+
 def _known(rows: DataFrame, run: str) -> DataFrame:
     """The row of a set that trainings are compared with, of an engine's rows."""
     return rows[(rows.kind == COMPARED) & (rows.run == run)]
@@ -113,7 +118,7 @@ def _summary(group: DataFrame, kind: str) -> Row:
 def answer(rows: DataFrame) -> str:
     """Whether the robot learns to come back."""
     sentences = []
-    for engine, group in groups(rows, "engine").items():
+    for engine, group in _engines(rows).items():
         found, (neutral,) = _summary(group, RECOMMENDED), _known(group, NEUTRAL).survival_100
         survival = [shown(share, ".0%") for share in (found["survival_100"], found["lowest_survival"], neutral)]
         reached = shown(found["of_best"], ".1%")
@@ -131,14 +136,14 @@ def headroom(rows: DataFrame) -> str:
     reached = [
         f"{shown(_of_best(_known(group, 'shipped'), _known(group, BEST)).iloc[0], '.1%')} of the best known score in"
         f" {WORDS[engine]}"
-        for engine, group in groups(rows, "engine").items()
+        for engine, group in _engines(rows).items()
     ]
     return f"The shipped V1 to V4 reach {' and '.join(reached)}."
 
 
 def figure(rows: DataFrame) -> Figure:
     """Where V1 to V4 settle, and how close trainings come to the best known score."""
-    engines = groups(rows, "engine")
+    engines = _engines(rows)
     drawn, (*settled, shares) = panels(len(engines) + 1, 0.35)
     columns = {}
     for axis, (engine, group) in zip(settled, engines.items(), strict=True):
@@ -159,7 +164,7 @@ def closeness(rows: DataFrame) -> str:
     """How close trainings come to the best known set, for what they recommend and for what their networks say."""
     found = [
         {"engine": engine, "set": kind, **_summary(group, kind)}
-        for engine, group in groups(rows, "engine").items()
+        for engine, group in _engines(rows).items()
         for kind in (RECOMMENDED, MU)
     ]
     caption = (
@@ -174,7 +179,7 @@ def closeness(rows: DataFrame) -> str:
 def compared(rows: DataFrame) -> str:
     """The sets that trainings are compared with."""
     found: list[dict[str, Any]] = []
-    for engine, group in groups(rows, "engine").items():
+    for engine, group in _engines(rows).items():
         best = _scores(_known(group, BEST))
         for run in KNOWN:
             known = _known(group, run)
