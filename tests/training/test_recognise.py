@@ -49,6 +49,20 @@ def test_a_robot_that_changes_is_recognised_anew() -> None:
     assert robot.mean_reward(2.6) > 0.9
 
 
+@pytest.mark.parametrize("fall", [None, 1.8])
+def test_a_robot_that_the_shipped_ones_suited_is_recognised_after_one_window(fall: float | None) -> None:
+    robot = KnownRobot(0.0, 4.0, then=1.0, change=2.5, fall=fall)
+    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    after = [window.parameters for window in robot.seen if window.begin >= 150.0]
+    assert top(1.0) in after[:3]
+
+
+def test_a_robot_that_falls_in_its_first_window_is_felt_again() -> None:
+    robot = KnownRobot(1.0, fall=0.0)
+    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    assert [window.parameters for window in robot.seen[:3]] == [SHIPPED, SHIPPED, top(1.0)]
+
+
 def test_another_robot_than_those_of_the_logs_is_refused() -> None:
     robot = KnownRobot(0.0)
     robot.config = type(robot.config)(measure_seconds=5.0)
