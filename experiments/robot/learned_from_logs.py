@@ -143,7 +143,7 @@ def answer(rows: DataFrame) -> str:
         f"scores {shown(minute.mean, '.2f')} in its first minute, in {minute.sessions} sessions. That is "
         f"{_more(compared(hard, 'first_minute', other=CAREFUL))} than the careful learner scores from scratch. In the "
         f"first three minutes it scores {_more(compared(hard, 'first_3_min', other=BEST))} than the one set that is "
-        f"best for all robots of the logs, run from the first window on; the first window alone, which runs the shipped "
+        f"best for all robots of the logs, run from the first window on; its first window alone, with the shipped "
         f"parameters, costs {shown(_first_window(hard), '.3f')}. In minutes 8 to 10 it scores "
         f"{_more(late(rows[rows.group == KNOWN_KIND]))} than the careful learner, on hard and easy robots together.",
     ]
