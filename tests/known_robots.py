@@ -7,7 +7,7 @@ from operated import START, FormulaRobot
 
 from sarah.operation.settings import BOX, SHIPPED, Parameters
 from sarah.operation.window import FELT, Window
-from sarah.recognition.logs import LoggedRobot, LoggedWindow
+from sarah.recognition.logged import LoggedRobot, LoggedWindow
 from sarah.recognition.recognition import Conditions
 from sarah.robot.scale import Scale
 

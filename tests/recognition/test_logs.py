@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from sarah.episode.from_mapping import from_mapping
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, SarahError
 from sarah.logs.robot_log import RobotLog
 from sarah.logs.simulated import about_robot
 from sarah.operation.settings import BOX, SHIPPED, Change, OperationConfig
@@ -28,7 +28,7 @@ def window(index: int, changes: int = 0) -> Window:
 def session(path: Path, seed: int = 0, **settings: Any) -> Path:
     config = OperationConfig(**{"changes": (WEAK,), **settings})
     folder = SessionFolder.create(path, SessionSpec(learner="none", seed=seed, config=config))
-    for one in (window(0), window(1), window(2, changes=1)):
+    for one in (window(0), window(1), window(2, changes=len(config.changes))):
         folder.append_window(one)
     return path
 
@@ -76,6 +76,10 @@ def test_a_table_of_the_same_columns_is_a_log(tmp_path: Path) -> None:
         ({"robot": "x" * 1000}, "names a robot"),
         ({"changes": "many"}, "changes must be a number"),
         ({"measure_seconds": 1e9}, "measure_seconds"),
+        ({"fell": "perhaps"}, "fell must be 0 or 1, not 'perhaps'"),
+        ({"fell": None}, "without fell"),
+        ({"changes": -1}, "changes must be a whole number from 0 on, not -1"),
+        ({"steps_per_second": "3,2"}, "steps_per_second must be a number"),
     ],
 )
 def test_a_hostile_table_is_named_with_what_is_wrong(changes: dict[str, Any], reason: str, tmp_path: Path) -> None:
@@ -83,6 +87,48 @@ def test_a_hostile_table_is_named_with_what_is_wrong(changes: dict[str, Any], re
     with pytest.raises(ConfigurationError) as error:
         read_logs([file])
     assert str(file) in str(error.value) and reason in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_table_whose_cells_do_not_fit_its_columns_is_refused(tmp_path: Path) -> None:
+    file = table(tmp_path / "table.csv")
+    text = file.read_text()
+    file.write_text(text.replace("0.8,", "0,8,", 1))
+    with pytest.raises(ConfigurationError, match=r"table\.csv has a row with more cells than columns"):
+        read_logs([file])
+    file.write_text(text.replace("observed_reward", "P1"))
+    with pytest.raises(ConfigurationError, match=r"table\.csv has two columns 'P1'"):
+        read_logs([file])
+
+
+def test_a_table_of_a_spreadsheet_is_a_log(tmp_path: Path) -> None:
+    file = table(tmp_path / "table.csv", fell="TRUE")
+    file.write_text(file.read_text().split("\n", 1)[1], encoding="utf-8-sig")
+    (robot,) = read_logs([file])
+    assert robot.windows[0].parameters == SHIPPED and robot.windows[0].fell
+
+
+def test_robots_of_one_name_and_two_kinds_stay_apart(tmp_path: Path) -> None:
+    files = [table(tmp_path / f"{kind}.csv", robot="mine", kind=kind) for kind in ("light", "heavy")]
+    assert [robot.kind for robot in read_logs(files)] == ["light", "heavy"]
+
+
+@pytest.mark.parametrize(
+    ("good", "bad", "reason"),
+    [
+        (",0.8,", ",1e300,", "observed_reward must be at most"),
+        (",0.8,0,0.0", ",0.8,0,1e300", "a_x_mean must be at most"),
+        (",0.8,0,", ",0.8,2,", "fell must be 0 or 1, not '2'"),
+        ("0,0.0,6.0,0,", "0,0.0,6.0,9,", "after 9 changes, of 1"),
+    ],
+)
+def test_a_hostile_session_is_named_with_what_is_wrong(good: str, bad: str, reason: str, tmp_path: Path) -> None:
+    path = session(tmp_path / "session")
+    text = (path / "windows.csv").read_text()
+    assert good in text
+    (path / "windows.csv").write_text(text.replace(good, bad, 1))
+    with pytest.raises(SarahError, match=reason) as error:
+        read_logs([path])
+    assert str(path) in str(error.value) and "\n" not in str(error.value)
 
 
 @pytest.mark.parametrize(
@@ -131,6 +177,8 @@ def test_an_mcap_file_with_other_windows_is_refused(tmp_path: Path) -> None:
         read_logs([mcap(tmp_path / "long.mcap", duration=9.0)])
     with pytest.raises(ConfigurationError, match=r"settle_seconds must be between"):
         read_logs([mcap(tmp_path / "hostile.mcap", {"settle_seconds": "1e9"})])
+    with pytest.raises(ConfigurationError, match=r"dimensions must be values by name, not \[1\]"):
+        read_logs([mcap(tmp_path / "dimensions.mcap", {"dimensions": "[1]"})])
     with RobotLog(tmp_path / "empty.mcap", {}):
         pass
     with pytest.raises(ConfigurationError, match=r"empty\.mcap has no windows"):
