@@ -105,7 +105,8 @@ class _Known:
         self._reference = recognition.reference
         self._observed: dict[Parameters, list[float]] = {}
         self._banned: set[Parameters] = set()
-        self._place = np.full(len(recognition.whitening), np.inf)
+        self._place = np.zeros(len(recognition.whitening))
+        self._sets = {recognition.reference, *recognition.sets}
 
     @property
     def reference_reward(self) -> float:
@@ -118,21 +119,16 @@ class _Known:
         :param last: last window, which is felt if it ran the reference
         :return: whether it is another one
         """
-        window = last
+        window, is_first = last, not self._observed
         if window is None or window.parameters != self._reference:
             window = self._run_reference()
         if window.fell and not self._robot.is_over:  # it ended too soon for the robot to be felt
             window = self._run_reference()
         place = place_of(self._recognition, features_of(window.felt, self._robot.config.robot.scale))
-        if np.linalg.norm(place - self._place) <= CHANGED * self._recognition.far:
+        if not is_first and np.linalg.norm(place - self._place) <= CHANGED * self._recognition.far:
             return False
         self._place, self._observed, self._banned = place, {self._reference: [window.observed_reward]}, set()
         return True
-
-    def _run_reference(self) -> Window:
-        window = self._robot.run(self._reference)
-        self.observe(window)
-        return window
 
     def push(self) -> None:
         """Run what is believed to be better than all that was observed, until there is nothing."""
@@ -147,7 +143,7 @@ class _Known:
 
         :param window: window of the robot, with any parameters
         """
-        if window.parameters in self._recognition.sets:
+        if window.parameters in self._sets:
             self._observed.setdefault(window.parameters, []).append(window.observed_reward)
 
     def is_better_than(self, rewards: list[float]) -> bool:
@@ -171,6 +167,11 @@ class _Known:
                 search.remember(parameters, reward)
         search.stay_above(self.reference_reward)
         return search
+
+    def _run_reference(self) -> Window:
+        window = self._robot.run(self._reference)
+        self.observe(window)
+        return window
 
     @property
     def _is_known(self) -> bool:

@@ -6,7 +6,7 @@ from known_robots import LOGS, KnownRobot, top
 from sarah.errors import ConfigurationError
 from sarah.operation.settings import SHIPPED
 from sarah.recognition.learning import learn
-from sarah.recognition.recognition import Kind
+from sarah.recognition.recognition import Kind, Recognition
 from sarah.training.recognise import operate_recognised
 
 NEAREST = learn(LOGS)
@@ -27,9 +27,10 @@ def test_nothing_is_pushed_where_the_shipped_ones_are_good() -> None:
     assert robot.mean_reward() > 0.92
 
 
-def test_an_unknown_robot_learns_on_from_the_shipped_ones() -> None:
+@pytest.mark.parametrize("recognition", [NEAREST, Recognition()], ids=["of logs", "empty"])
+def test_an_unknown_robot_learns_on_from_the_shipped_ones(recognition: Recognition) -> None:
     robot = KnownRobot(6.0)
-    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    operate_recognised(robot, SHIPPED, 0, recognition)
     assert not {top(-1.0), top(1.0)} & {window.parameters for window in robot.seen}
     assert len({window.parameters for window in robot.seen}) > 3
 
