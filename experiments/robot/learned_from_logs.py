@@ -86,10 +86,10 @@ class LearnedFromLogs(Experiment):
         robots = list(ROBOTS)[: self.robots]
         every: list[Row] = []
         for seed in range(self.seeds):
-            for learners in ((*LONG, BEST), SHORT[1:]):
-                every += product(engine=["mujoco"], seed=[seed], robot=robots, learner=learners)
+            every += product(engine=["mujoco"], seed=[seed], robot=robots, learner=(*LONG, BEST))
             if seed == 0:
                 every += product(engine=["pybullet"], seed=[seed], robot=robots, learner=LONG)
+        every += product(engine=["mujoco"], seed=range(self.seeds), robot=robots, learner=SHORT[1:])
         return [case for case in every if case["robot"] != WEAKENING or not _is_short(**case)]
 
     def rows(self, engine: Engine, seed: int, robot: str, learner: str) -> Iterator[Row]:
