@@ -171,7 +171,7 @@ def goals(rows: DataFrame) -> str:
     """The goals, and what came out."""
     found = DataFrame(
         [
-            {"goal": one.goal, "at least": one.at_least, **one.found._asdict(), "reached": _YES[one.is_reached]}
+            {"goal": one.goal, "at least": one.at_least, **one.found._asdict(), "reached": one.reached}
             for one in all_goals(rows)
         ]
     )
@@ -181,9 +181,6 @@ def goals(rows: DataFrame) -> str:
     )
     columns = ["goal", "at least", "mean", "low", "high", "sessions", "reached"]
     return table(found, columns, caption, **dict.fromkeys(columns[1:5], ".3f"))
-
-
-_YES = {True: "yes", False: "no"}
 
 
 def choices(rows: DataFrame) -> str:
@@ -223,6 +220,22 @@ def robots(rows: DataFrame) -> str:
     means = rows.groupby(["robot", "learner"], sort=False).first_3_min.mean().reset_index()
     caption = "Mean score of the first three minutes on each robot, in MuJoCo."
     return turned_table(means, ["robot"], "learner", "first_3_min", caption, ".2f")
+
+
+def nothing_gained(rows: DataFrame) -> str:
+    """What makes no difference: the ground, robots that the shipped parameters suit, and the kind of classifier."""
+    rows = graded(rows)
+    hard, easy = (rows[rows.grade == grade] for grade in ("hard", "easy"))
+    slope = rows[rows.robot.str.startswith("slope")]
+    classes, network = SHORT[1:]
+    return (
+        f"On a slope the recogniser scores {_more(compared(slope, 'score', other=FROZEN))} than frozen parameters over "
+        f"ten minutes, and {_more(compared(slope, 'score', other=CAREFUL))} than the careful learner. "
+        f"On [other grounds](decisions.md) a set for each gained nothing. On easy robots together it scores "
+        f"{_more(compared(easy, 'score', other=CAREFUL))} than the careful learner. A network instead of the linear "
+        f"discriminant scores {_more(compared(hard, 'first_3_min', network, classes))} in the first three minutes on "
+        f"hard robots, and the discriminant {_more(compared(hard, 'first_3_min', classes, NEAREST))} than distances do."
+    )
 
 
 def last_minutes(rows: DataFrame) -> str:

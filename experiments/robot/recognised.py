@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Literal, NamedTuple
 
@@ -47,9 +48,10 @@ class Goal(NamedTuple):
     counts: Literal["mean", "high"] = "mean"
 
     @property
-    def is_reached(self) -> bool:
-        """Whether it is reached."""
-        return getattr(self.found, self.counts) >= self.at_least
+    def reached(self) -> str:
+        """Whether it is reached, in a word; empty while nobody knows."""
+        value = getattr(self.found, self.counts)
+        return "" if math.isnan(value) else "yes" if value >= self.at_least else "no"
 
 
 def graded(rows: DataFrame) -> DataFrame:
@@ -102,8 +104,9 @@ def goals(rows: DataFrame) -> Iterator[Goal]:
     yield Goal("… falls of the careful learner less its own", 0.0, compared(hard, "falls", CAREFUL, NEAREST))
     yield Goal("easy robots, ten minutes, less frozen ones", -0.005, compared(easy, "score", other=FROZEN))
     yield Goal("all robots, minutes 8 to 10, less the careful learner", -0.005, late(staying))
-    worst, found = min(((robot, late(its)) for robot, its in staying.groupby("robot")), key=lambda one: one[1].high)
-    yield Goal(f"… and on each within its interval; most clearly below it on {worst}", 0.0, found, "high")
+    of_each = {str(robot): late(its) for robot, its in staying.groupby("robot")}
+    worst = min(of_each, key=lambda robot: (math.isnan(of_each[robot].high), of_each[robot].high))
+    yield Goal(f"… and on no robot below it by its interval; worst is {worst}", 0.0, of_each[worst], "high")
     for robot, its in rows[rows.group == OTHER_KIND].groupby("robot", sort=False):
         yield Goal(f"{robot}, less frozen ones", -0.01, compared(its, "score", other=FROZEN))
         yield Goal(f"{robot}, less the careful learner", -0.02, compared(its, "score", other=CAREFUL))

@@ -34,9 +34,11 @@ RECENT = 4
 """Number of the last windows of the careful learner whose mean is compared with what is believed of a set."""
 LOSS = 0.1
 """Reward that windows of the careful learner must lose before the robot is recognised anew."""
-LOST_WINDOWS, PATIENCE = 2, 10
-"""Number of such windows in a row, and least number of windows between two recognitions, where the reference costs
-something: it is worth less than was expected by more than that loss."""
+LOST_WINDOWS = 2
+"""Number of such windows in a row, where the reference is worth less than was expected by more than that loss;
+elsewhere a single one is enough."""
+PATIENCE = 10
+"""Least number of windows between two recognitions where the reference costs that much."""
 CHANGED = 0.5
 """Distance of a robot from its former place at which it counts as changed, over that beyond which one is unknown."""
 
