@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
@@ -24,13 +25,15 @@ from sarah.robot.dimensions import check_dimensions, scale_of
 from sarah.robot.scale import Scale
 from sarah.runs.config_files import settings_by_key
 from sarah.runs.kinds import SESSION
-from sarah.runs.session import SessionSpec
+from sarah.runs.session import LARGEST_SEED, SessionSpec
 from sarah.runs.session_folder import MOST_WINDOWS, SessionFolder
 
 MCAP, TABLE = ".mcap", ".csv"
 """Endings of the names of logs that are files."""
 TIMES = ("settle_seconds", "measure_seconds")
 """Names of the times of a window."""
+LONGEST_KIND, DIGEST_LENGTH = LONGEST_ROBOT - len(f", seed {LARGEST_SEED}"), 8
+"""Largest number of characters in the name of a simulated robot's kind, and in the digest of a longer one."""
 BYTE_ORDER_MARK = "\N{ZERO WIDTH NO-BREAK SPACE}"
 """First character of a table that a spreadsheet has written."""
 SLACK = 0.1
@@ -103,7 +106,7 @@ def _names_of(folder: SessionFolder, spec: SessionSpec, changes: int) -> tuple[s
     if robot is None:
         kind = kind_of(spec.config, changes)
         return _robot_of(kind, spec.seed), kind
-    name = f"{robot.robot} on {robot.host}"[:LONGEST_ROBOT]
+    name = _fitting(f"{robot.robot} on {robot.host}")
     return name, kind_of(spec.config) if robot.has_score else name
 
 
@@ -116,7 +119,15 @@ def kind_of(config: OperationConfig, changes: int = 0) -> str:
     values, usual = settings_by_key(config.robot_after(changes)), settings_by_key(OperationConfig().robot)
     physics = ("push.", "physics.")  # what the robot is put through, and how it is simulated
     differing = [f"{key} {values[key]}" for key in values if values[key] != usual[key] and not key.startswith(physics)]
-    return (", ".join(differing) or "as simulated")[:LONGEST_ROBOT]
+    return _fitting(", ".join(differing) or "as simulated")
+
+
+def _fitting(name: str) -> str:
+    """A name that a log may have, also with a seed after it; of a longer one the beginning, and a digest of all."""
+    if len(name) <= LONGEST_KIND:
+        return name
+    digest = hashlib.sha256(name.encode()).hexdigest()[:DIGEST_LENGTH]
+    return f"{name[: LONGEST_KIND - DIGEST_LENGTH - 1]} {digest}"
 
 
 def facts_of(config: OperationConfig, seed: int) -> dict[str, str]:

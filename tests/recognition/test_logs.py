@@ -172,6 +172,14 @@ def test_the_windows_of_an_mcap_file_are_a_log(tmp_path: Path) -> None:
     assert (robot.name, robot.kind, robot.conditions) == (same.name, same.kind, same.conditions)
 
 
+def test_kinds_with_many_differing_settings_stay_apart(tmp_path: Path) -> None:
+    shared = {"engine": "mujoco", "randomisation": {"actuator_bandwidth": 12.0, "delay_seconds": 0.03, "friction": 0.5}}
+    configs = [from_mapping(OperationConfig(), {"robot": {**shared, "payload": load}}) for load in (5.0, 8.0)]
+    files = [mcap(tmp_path / f"{seed}.mcap", facts_of(config, 2**31 - 1)) for seed, config in enumerate(configs)]
+    first, second = read_logs(files)
+    assert first.kind != second.kind and first.kind.startswith("engine mujoco, randomisation.friction")
+
+
 def test_an_mcap_file_with_other_windows_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match=r"long\.mcap has a window of 9 s, not of 6 s"):
         read_logs([mcap(tmp_path / "long.mcap", duration=9.0)])
