@@ -72,11 +72,7 @@ def logged_robots(
     :param scale: size of the robot
     :raises ConfigurationError: naming the log and what is wrong in it
     """
-    for word in (name, kind):
-        if not is_text(word) or len(word) > LONGEST_ROBOT:
-            raise ConfigurationError(
-                f"{path} names a robot {shortened(word)}: a name is one line of {LONGEST_ROBOT} characters"
-            )
+    check_names(path, name, kind)
     return [
         LoggedRobot(
             f"{name}{change}", f"{kind}{change}", conditions, scale, tuple(logged_window(path, row) for row in its)
@@ -84,6 +80,20 @@ def logged_robots(
         for changes, its in groupby(rows, lambda row: _changes(path, row))
         for change in [f", change {changes}" if changes else ""]
     ]
+
+
+def check_names(path: Path, *names: str) -> None:
+    """Refuse names that no table can show.
+
+    :param path: path of the log, which errors name
+    :param names: names of robots and kinds
+    :raises ConfigurationError: naming the log and the name
+    """
+    for name in names:
+        if not is_text(name) or len(name) > LONGEST_ROBOT:
+            raise ConfigurationError(
+                f"{path} names a robot {shortened(name)}: a name is one line of {LONGEST_ROBOT} characters"
+            )
 
 
 def logged_window(path: Path, row: Mapping[str, Any]) -> LoggedWindow:

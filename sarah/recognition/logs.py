@@ -19,7 +19,7 @@ from sarah.logs.reading import Log
 from sarah.logs.topics import WINDOWS
 from sarah.operation.settings import BOX, OperationConfig
 from sarah.operation.window import FELT, Window
-from sarah.recognition.logged import LONGEST_ROBOT, LoggedRobot, logged_robots, logged_window, number_of
+from sarah.recognition.logged import LONGEST_ROBOT, LoggedRobot, check_names, logged_robots, logged_window, number_of
 from sarah.recognition.recognition import Conditions
 from sarah.robot.dimensions import check_dimensions, scale_of
 from sarah.robot.scale import Scale
@@ -89,8 +89,10 @@ def _of_session(path: Path) -> list[LoggedRobot]:
     for changes, windows in groupby(folder.windows(), lambda window: window.changes):
         if not 0 <= changes <= len(spec.config.changes):
             raise ConfigurationError(f"{path} has a window after {changes} changes, of {len(spec.config.changes)}")
+        names = _names_of(folder, spec, changes)
+        check_names(path, *names)
         its = tuple(logged_window(path, _row(one)) for one in windows)
-        robots.append(LoggedRobot(*_names_of(folder, spec, changes), conditions, scale, its))
+        robots.append(LoggedRobot(*names, conditions, scale, its))
     return robots
 
 

@@ -16,6 +16,7 @@ from sarah.operation.window import FELT, Window
 from sarah.recognition.logs import facts_of, read_logs
 from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
+from sarah.runs.session_robot import SessionRobot
 
 WEAK = Change(0.1, {"randomisation": {"actuator_bandwidth": 12.0}})
 
@@ -25,9 +26,9 @@ def window(index: int, changes: int = 0) -> Window:
     return Window(index, 6.0 * index, 6.0, changes, SHIPPED, 0.9, 0.8, index == 1, felt)
 
 
-def session(path: Path, seed: int = 0, **settings: Any) -> Path:
+def session(path: Path, seed: int = 0, robot_there: SessionRobot | None = None, **settings: Any) -> Path:
     config = OperationConfig(**{"changes": (WEAK,), **settings})
-    folder = SessionFolder.create(path, SessionSpec(learner="none", seed=seed, config=config))
+    folder = SessionFolder.create(path, SessionSpec(learner="none", seed=seed, config=config), robot=robot_there)
     for one in (window(0), window(1), window(2, changes=len(config.changes))):
         folder.append_window(one)
     return path
@@ -129,6 +130,12 @@ def test_a_hostile_session_is_named_with_what_is_wrong(good: str, bad: str, reas
     with pytest.raises(SarahError, match=reason) as error:
         read_logs([path])
     assert str(path) in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_robot_whose_name_moves_the_cursor_is_refused(tmp_path: Path) -> None:
+    path = session(tmp_path / "session", robot_there=SessionRobot(robot="\x1b[31mred"))
+    with pytest.raises(ConfigurationError, match="session names a robot"):
+        read_logs([path])
 
 
 @pytest.mark.parametrize(
