@@ -9,6 +9,7 @@ from experiments.robot import engines, landscape, physics
 from experiments.robot.conditions import askew, biased
 from experiments.robot.hard_pushes import difference
 from experiments.robot.race import columns, curve_of, ranked
+from experiments.robot.recognised import CAREFUL, NEAREST, compared
 from sarah.reports.race_entry import RaceCurve
 from sarah.simulation.randomisation import SensorConditions
 
@@ -76,3 +77,16 @@ def test_only_seeds_with_all_algorithms_are_ranked() -> None:
     assert (naf["runs"], tpe["runs"]) == (2, 2)
     assert (round(naf["final_score"], 9), round(tpe["over_naf"], 9)) == (0.7, 0.075)
     assert (round(naf["score_while_learning"], 9), round(naf["score_while_learning_error"], 9)) == (0.25, 0.05)
+
+
+def test_learners_are_compared_robot_by_robot() -> None:
+    """Differences of 0, 0.2 on one robot and 0.3 on the other: means 0.1 and 0.3, and 12.71 times an error of 0.1."""
+    scores = {("a", 0): (0.5, 0.5), ("a", 1): (0.7, 0.5), ("b", 0): (0.9, 0.6)}
+    rows = DataFrame(
+        {"robot": robot, "seed": seed, "learner": learner, "score": score}
+        for (robot, seed), pair in scores.items()
+        for learner, score in zip((NEAREST, CAREFUL), pair, strict=True)
+    )
+    found = compared(rows, "score", other=CAREFUL)
+    assert (found.mean, found.high, found.sessions) == (approx(0.2), approx(0.2 + 1.2706, abs=1e-4), 3)
+    assert math.isnan(compared(rows[rows.robot == "b"], "score").low)
