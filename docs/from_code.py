@@ -5,7 +5,10 @@
 
 from __future__ import annotations
 
+import ast
 import dataclasses
+import inspect
+import itertools
 import os
 import re
 import subprocess
@@ -34,6 +37,7 @@ from sarah.runs.agent_settings import AGENT_SETTINGS, LearnerSettings, NAFSettin
 from sarah.runs.config import TrainingConfig
 from sarah.runs.config_files import settings_by_key
 from sarah.simulation.physics import PHYSICS, Physics
+from sarah.training import recognise
 
 HELP_WIDTH = 86
 """Of a command's help, in characters: as wide as the page."""
@@ -188,6 +192,17 @@ def targets_part() -> Iterator[str]:
     yield from table(head, rows)
 
 
+def recognising_part() -> Iterator[str]:
+    """A table of the constants by which the learner ``recognise`` decides."""
+    statements = ast.parse(inspect.getsource(recognise)).body
+    rows = []
+    for statement, after in itertools.pairwise(statements):
+        if isinstance(statement, ast.Assign) and isinstance(after, ast.Expr):
+            name = ast.unparse(statement.targets[0])
+            rows.append([f"`{name}`", str(getattr(recognise, name)), markdown(ast.literal_eval(after.value))])
+    yield from table(["constant", "value", "meaning"], rows)
+
+
 def commands_part() -> Iterator[str]:
     """What every command says to ``--help``, in the order of setup.cfg."""
     environment = {**os.environ, "COLUMNS": str(HELP_WIDTH), "NO_COLOR": "1"}
@@ -232,6 +247,7 @@ PARTS: dict[str, Callable[[], Iterable[str]]] = {
     "dimensions": dimensions_part,
     "metrics": metrics_part,
     "parameters": parameters_part,
+    "recognising": recognising_part,
     "settings": settings_part,
     "targets": targets_part,
     "tick": tick_part,

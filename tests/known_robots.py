@@ -7,7 +7,7 @@ from operated import START, FormulaRobot
 
 from sarah.operation.settings import BOX, SHIPPED, Parameters
 from sarah.operation.window import FELT, Window
-from sarah.recognition.logs import LoggedRobot, LoggedWindow
+from sarah.recognition.logged import LoggedRobot, LoggedWindow
 from sarah.recognition.recognition import Conditions
 from sarah.robot.scale import Scale
 
@@ -52,6 +52,7 @@ class KnownRobot(FormulaRobot):
     :param then: kind that it is of later
     :param change: minute from which on it is
     :param best: reward of its best parameters, where they disappoint
+    :param fall: minute at which it falls, whatever its parameters
     """
 
     def __init__(
@@ -61,8 +62,11 @@ class KnownRobot(FormulaRobot):
         then: float | None = None,
         change: float = 0.0,
         best: float | None = None,
+        fall: float | None = None,
     ) -> None:
         def worth(shares: np.ndarray, minute: float) -> float:
+            if fall is not None and fall <= minute < fall + 0.1:
+                return 0.0
             is_best = np.allclose(shares, BOX.shares(top(kind)))
             return best if best is not None and is_best else reward(shares, self.kind_at(minute))
 
@@ -72,6 +76,8 @@ class KnownRobot(FormulaRobot):
 
     def run(self, parameters: Parameters) -> Window:
         begin = self.seconds
-        window = dataclasses.replace(super().run(parameters), felt=felt(self.kind_at(begin / 60.0), self._felt))
+        window = super().run(parameters)
+        if not window.fell:
+            window = dataclasses.replace(window, felt=felt(self.kind_at(begin / 60.0), self._felt))
         self.seen[-1] = window
         return window

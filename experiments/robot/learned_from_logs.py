@@ -13,42 +13,62 @@ from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
 
-import numpy as np
 from pandas import DataFrame
 
 from experiments import record
 from experiments.experiment import TRAINING, Experiment, product
 from experiments.record import Row
+from experiments.robot.faulty_robots import FaultyRobot
 from experiments.robot.logged_robots import FIRST_HELD_OUT_SEED, HELD_OUT, UNKNOWN, Differing
+from experiments.robot.logged_sets import MINUTES, WINDOW_SECONDS
+from experiments.robot.recognised import (
+    BEST,
+    CAREFUL,
+    CHANGING,
+    EASY,
+    FROZEN,
+    HARD,
+    KNOWN_KIND,
+    NEAREST,
+    OTHER_KIND,
+    Compared,
+    compared,
+    graded,
+    late,
+)
+from experiments.robot.recognised import goals as all_goals
 from experiments.tables import NOTHING, shown, table, turned_table
 from sarah.files import replace_text
+from sarah.operation.robot_in_operation import RobotInOperation
 from sarah.operation.settings import SHIPPED, Change
 from sarah.recognition.learning import best_of_all, learn
 from sarah.recognition.logs import read_logs
 from sarah.recognition.recognition import SHIPPED_FILE, Kind, Recognition
-from sarah.reports.uncertainty import difference
 from sarah.runs.session import SessionSpec
 from sarah.simulation.engines import Engine
 from sarah.training.operate import SessionResult, run_session
 
 LOGS = ("logged_robots", "logged_sets")
-CHANGING = "servos 10/s from minute 5"
-ROBOTS = {**{str(robot): robot for robot in (*HELD_OUT[::2], *HELD_OUT[1::2], *UNKNOWN)}, CHANGING: Differing()}
-GROUPS = {
-    **dict.fromkeys(map(str, HELD_OUT), "known"),
-    **dict.fromkeys(map(str, UNKNOWN), "unknown"),
-    CHANGING: "changing",
+WEAKENING = "servos 10/s from minute 5"
+FAULTY = "a dead pad, and a gyroscope that is off"
+ROBOTS = {
+    **{str(robot): robot for robot in (*HELD_OUT[::2], *HELD_OUT[1::2], *UNKNOWN)},
+    WEAKENING: Differing(),
+    FAULTY: Differing(),
 }
-FROZEN, CAREFUL, BEST = "frozen", "careful", "one set for all, frozen"
+"""Robots by name. The place of each decides its seeds."""
+GROUPS = {
+    **dict.fromkeys(map(str, HELD_OUT), KNOWN_KIND),
+    **dict.fromkeys((*map(str, UNKNOWN), FAULTY), OTHER_KIND),
+    WEAKENING: CHANGING,
+}
 RECOGNISE = {f"recognise, {kind}": kind for kind in ("nearest", "classes", "network")}
-LONG = ("recognise, nearest", CAREFUL, FROZEN)
+LONG = (NEAREST, CAREFUL, FROZEN)
 SHORT = (BEST, "recognise, classes", "recognise, network")
 """Learners of which only the first minutes are asked for."""
 FORMATS = {"minute": ".2f", "_min": ".3f", "minute_6": ".2f", "falls": ".1f"}
 SPANS = {"first_minute": (0.0, 1.1), "first_3_min": (0.0, 3.1), "minute_6": (5.05, 6.12), "from_8_min": (8.0, 11.0)}
 """Spans of the time of operation, in min, by the end of the windows: the first one begins with a second of standing."""
-HARD, EASY = 0.85, 0.92
-"""Mean score of the frozen parameters below which a robot is hard, and from which on it is easy."""
 
 
 @dataclass(frozen=True)
@@ -66,18 +86,18 @@ class LearnedFromLogs(Experiment):
         robots = list(ROBOTS)[: self.robots]
         every: list[Row] = []
         for seed in range(self.seeds):
-            for learners in ((*LONG, BEST), SHORT[1:]):
-                every += product(engine=["mujoco"], seed=[seed], robot=robots, learner=learners)
+            every += product(engine=["mujoco"], seed=[seed], robot=robots, learner=(*LONG, BEST))
             if seed == 0:
                 every += product(engine=["pybullet"], seed=[seed], robot=robots, learner=LONG)
-        return [case for case in every if case["robot"] != CHANGING or not _is_short(**case)]
+        every += product(engine=["mujoco"], seed=range(self.seeds), robot=robots, learner=SHORT[1:])
+        return [case for case in every if case["robot"] != WEAKENING or not _is_short(**case)]
 
     def rows(self, engine: Engine, seed: int, robot: str, learner: str) -> Iterator[Row]:
         """Mean scores of a session."""
         is_short = _is_short(engine, seed, robot, learner)
         minutes = min(self.minutes, self.short_minutes) if is_short else self.minutes
         config = ROBOTS[robot].config(minutes, engine)
-        if robot == CHANGING:
+        if robot == WEAKENING:
             change = Change(minutes / 2.0, {"randomisation": {"actuator_bandwidth": 10.0}})
             config = dataclasses.replace(config, changes=(change,))
         first = FIRST_HELD_OUT_SEED + 100 * list(ROBOTS).index(robot)
@@ -86,7 +106,8 @@ class LearnedFromLogs(Experiment):
         parameters = best_of_all(learned("best")) if learner == BEST else SHIPPED
         identity = recognition.identity if recognition else ""
         spec = SessionSpec(parameters, name, first + seed, config, identity)
-        found = run_session(spec, recognition=recognition)
+        make_robot = FaultyRobot if robot == FAULTY else RobotInOperation
+        found = run_session(spec, make_robot=make_robot, recognition=recognition)
         yield {"group": GROUPS[robot], **_scores(found, is_short), "falls": found.falls}
 
 
@@ -112,62 +133,69 @@ FULL = LearnedFromLogs()
 QUICK = LearnedFromLogs(seeds=1, robots=1, minutes=0.1, short_minutes=0.1)
 
 
-NEAREST = LONG[0]
-
-
-def graded(rows: DataFrame) -> DataFrame:
-    """Rows of robots in MuJoCo, with a column that says how good the frozen shipped parameters are on each."""
-    rows = rows[rows.engine == "mujoco"]
-    frozen = rows[rows.learner == FROZEN].groupby("robot").score.mean()
-    names = {
-        robot: "hard" if score < HARD else "easy" if score >= EASY else "between" for robot, score in frozen.items()
-    }
-    rows = rows[rows.robot.isin(names)]
-    return rows.assign(grade=rows.group.mask(rows.group == "known", rows.robot.map(names)))
-
-
-def _grade(score: float) -> str:
-    return "hard" if score < HARD else "easy" if score >= EASY else "between"
-
-
-def against(rows: DataFrame, learner: str, other: str, column: str) -> tuple[float, float, float, float, int]:
-    """Mean of a learner, its difference from another one with the 95 % interval, and the number of sessions."""
-    wide = rows.pivot(index=["robot", "seed"], columns="learner", values=column)
-    if learner not in wide or other not in wide:
-        return (np.nan,) * 4 + (0,)
-    both = wide[[learner, other]].dropna().to_numpy()
-    if not len(both):
-        return (np.nan,) * 4 + (0,)
-    return (float(both[:, 0].mean()), *difference(both[:, :1], both[:, 1:]), len(both))
-
-
 def answer(rows: DataFrame) -> str:
     """What logs are worth on hard robots and on easy ones, as far as rows tell."""
     rows = graded(rows)
     hard, easy = (rows[rows.grade == grade] for grade in ("hard", "easy"))
-    minute, *gain, count = against(hard, NEAREST, CAREFUL, "first_minute")
+    minute = compared(hard, "first_minute")
     sentences = [
         f"On {hard.robot.nunique()} robots where the shipped parameters score below {HARD}, a robot that is recognised "
-        f"scores {shown(minute, '.2f')} in its first minute, in {count} sessions. The difference from the careful "
-        f"learner from scratch is {_with_interval(gain)}.",
+        f"scores {shown(minute.mean, '.2f')} in its first minute, in {minute.sessions} sessions. That is "
+        f"{_more(compared(hard, 'first_minute', other=CAREFUL))} than the careful learner scores from scratch. In the "
+        f"first three minutes it scores {_more(compared(hard, 'first_3_min', other=BEST))} than the one set that is "
+        f"best for all robots of the logs, run from the first window on; its first window alone, with the shipped "
+        f"parameters, costs {shown(_first_window(hard), '.3f')}. In minutes 8 to 10 it scores "
+        f"{_more(late(rows[rows.group == KNOWN_KIND]))} than the careful learner, on hard and easy robots together.",
     ]
-    means = hard.groupby("learner").first_3_min.mean()
-    scores = [f"{shown(means[name], '.2f')} ({name})" for name in (NEAREST, CAREFUL, FROZEN, BEST) if name in means]
-    sentences.append(f"In the first three minutes the scores are {', '.join(scores)}.")
-    _, *late, count = against(rows[rows.group == "known"], NEAREST, CAREFUL, "from_8_min")
-    sentences.append(f"In minutes 8 to 10 it differs from the careful learner by {_with_interval(late)}.")
     if len(easy):
-        _, *lost, count = against(easy, NEAREST, FROZEN, "score")
         sentences.append(
-            f"Where the shipped parameters score {EASY} or more, it differs from frozen ones over ten minutes by "
-            f"{_with_interval(lost)}, in {count} sessions."
+            f"On {easy.robot.nunique()} robots where the shipped parameters score {EASY} or more, it scores "
+            f"{_more(compared(easy, 'score', other=FROZEN))} than those over ten minutes."
         )
     return " ".join(sentences)
 
 
-def _with_interval(found: list[float]) -> str:
-    mean, *ends = (shown(value, "+.3f") for value in found)
-    return mean if NOTHING in ends else f"{mean} ({' to '.join(ends)})"
+def _first_window(rows: DataFrame) -> float:
+    """What the first window costs in the first three minutes against one set for all."""
+    return compared(rows, "first_3_min", BEST, FROZEN).mean * WINDOW_SECONDS / (60.0 * MINUTES)
+
+
+def _more(found: Compared) -> str:
+    """A difference in words, with its interval."""
+    mean, low, high = (shown(abs(one) if one is found.mean else one, ".3f") for one in found[:3])
+    interval = "" if NOTHING in (low, high) else f" ({shown(found.low, '+.3f')} to {shown(found.high, '+.3f')})"
+    return f"{mean} {'less' if found.mean < 0.0 else 'more'}{interval}"
+
+
+def goals(rows: DataFrame) -> str:
+    """The goals, and what came out."""
+    found = DataFrame(
+        [
+            {"goal": one.goal, "at least": one.at_least, **one.found._asdict(), "reached": one.reached}
+            for one in all_goals(rows)
+        ]
+    )
+    caption = (
+        "Goals that were set before any of these robots ran, and what came out: mean scores and differences of the "
+        "recogniser, with 95 % intervals over robots, or over the sessions of a single robot. A mean decides."
+    )
+    columns = ["goal", "at least", "mean", "low", "high", "sessions", "reached"]
+    return table(found, columns, caption, **dict.fromkeys(columns[1:5], ".3f"))
+
+
+def choices(rows: DataFrame) -> str:
+    """What each way of recognising is worth against one set for all."""
+    rows = graded(rows)
+    found = [
+        {"robots": grade, "learner": learner, "other": other, **compared(its, "first_3_min", learner, other)._asdict()}
+        for grade, its in ((grade, rows[rows.grade == grade]) for grade in ("hard", "between", "easy", "unknown"))
+        for learner, other in (*((name, BEST) for name in RECOGNISE), (SHORT[2], SHORT[1]))
+    ]
+    caption = (
+        "Differences in the score of the first three minutes from another learner, with 95 % intervals over robots."
+    )
+    columns = ["robots", "learner", "other", "mean", "low", "high", "sessions"]
+    return table(DataFrame(found), columns, caption, mean="+.3f", low="+.3f", high="+.3f")
 
 
 def learners(rows: DataFrame) -> str:
@@ -188,15 +216,47 @@ def learners(rows: DataFrame) -> str:
 def robots(rows: DataFrame) -> str:
     """The first three minutes of every robot."""
     rows = graded(rows)
-    rows = rows[rows.group != "changing"]
+    rows = rows[rows.group != CHANGING]
     means = rows.groupby(["robot", "learner"], sort=False).first_3_min.mean().reset_index()
     caption = "Mean score of the first three minutes on each robot, in MuJoCo."
     return turned_table(means, ["robot"], "learner", "first_3_min", caption, ".2f")
 
 
+def nothing_gained(rows: DataFrame) -> str:
+    """What makes no difference: the ground, robots that the shipped parameters suit, and the kind of classifier."""
+    rows = graded(rows)
+    hard, easy = (rows[rows.grade == grade] for grade in ("hard", "easy"))
+    slope = rows[rows.robot.str.startswith("slope")]
+    classes, network = SHORT[1:]
+    return (
+        f"On a slope the recogniser scores {_more(compared(slope, 'score', other=FROZEN))} than frozen parameters over "
+        f"ten minutes, and {_more(compared(slope, 'score', other=CAREFUL))} than the careful learner. "
+        f"On [other grounds](decisions.md) a set for each gained nothing. On easy robots together it scores "
+        f"{_more(compared(easy, 'score', other=CAREFUL))} than the careful learner. A network instead of the linear "
+        f"discriminant scores {_more(compared(hard, 'first_3_min', network, classes))} in the first three minutes on "
+        f"hard robots, and the discriminant {_more(compared(hard, 'first_3_min', classes, NEAREST))} than distances do."
+    )
+
+
+def last_minutes(rows: DataFrame) -> str:
+    """Minutes 8 to 10 of every robot, against the careful learner."""
+    rows = graded(rows)
+    rows = rows[rows.group != CHANGING]
+    found = [
+        {"robot": robot, "score": compared(its, "from_8_min").mean, **late(its)._asdict()}
+        for robot, its in rows.groupby("robot", sort=False)
+    ]
+    caption = (
+        "Minutes 8 to 10 on each robot, in MuJoCo: mean score of the recogniser, and its difference from the careful "
+        "learner with the 95 % interval over seeds."
+    )
+    columns = ["robot", "score", "mean", "low", "high", "sessions"]
+    return table(DataFrame(found), columns, caption, mean="+.3f", low="+.3f", high="+.3f")
+
+
 def change(rows: DataFrame) -> str:
     """The minute after the servos weaken."""
-    rows = rows[rows.robot == CHANGING]
+    rows = rows[rows.group == CHANGING]
     if rows.empty:
         return "That robot has not run yet."
     means = rows.groupby("learner", sort=False)[["minute_6", "from_8_min", "falls"]].mean().reset_index()

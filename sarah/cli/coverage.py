@@ -7,7 +7,8 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 from sarah.operation.settings import BOX
-from sarah.recognition.logs import LoggedRobot, read_logs
+from sarah.recognition.logged import LoggedRobot
+from sarah.recognition.logs import read_logs
 
 LONGEST_SHOWN = 40
 """Number of characters of a robot's name that are shown."""

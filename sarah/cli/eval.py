@@ -25,7 +25,7 @@ from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.errors import ConfigurationError
 from sarah.ranges import Within
-from sarah.runs.kinds import SESSION
+from sarah.runs.kinds import TRAINING
 from sarah.streams import check_output
 
 if TYPE_CHECKING:
@@ -166,7 +166,7 @@ def _next_steps(options: EvalOptions, arguments: Sequence[str]) -> Iterator[Step
     if options.log is not None:
         yield "read its log", ("sarah-log", options.log)
     yield to_see(options.subject, *passed_on(arguments, options.subject, *NOT_OF_VIEW), *first)
-    if Path(options.subject).is_dir() and not SESSION.owns(Path(options.subject)):
+    if TRAINING.owns(Path(options.subject)):
         typed = [] if options.task is None else ["--task", options.task]
         yield "have it on one page", ("sarah-report", options.subject, *typed)
 

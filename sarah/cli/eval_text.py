@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 from sarah.cli.options import pushed_words
@@ -20,6 +21,7 @@ from sarah.episode.task_answers import controller_of
 from sarah.episode.tasks import BALANCE, Task
 from sarah.reports.markdown import plain_text
 from sarah.runs.episode_words import changed_settings, differences
+from sarah.runs.kinds import RECOGNITION
 
 MOST_ENDINGS = 5
 """Largest number of episodes of which a row says how each has ended."""
@@ -82,6 +84,10 @@ def _subject_rows(subject: str, spec: EpisodeSpec) -> Iterator[Row]:
     yield "subject", f"{subject}, task {spec.task.name}, in {config.engine}, {pushed_words(config)}"
     if is_shipped(subject):
         yield "origin", PARAMETER_SETS[subject].origin
+    if RECOGNITION.owns(Path(subject)):
+        from sarah.recognition.folder import ONE_FOR_ALL
+
+        yield "origin", ONE_FOR_ALL
     if spec.task is BALANCE:
         stepping, _ = controller_of(spec.task, spec.parameters, config)
         yield "steps with", ", ".join(f"{name} = {value:.3f}" for name, value in asdict(stepping).items())

@@ -15,7 +15,7 @@ from sarah.cli.options import parse_options
 from sarah.recognition.recognition import Kind
 
 if TYPE_CHECKING:
-    from sarah.recognition.logs import LoggedRobot
+    from sarah.recognition.logged import LoggedRobot
     from sarah.recognition.recognition import Recognition
 
 COMMAND = "sarah-train"

@@ -47,7 +47,8 @@ def place_of(recognition: Recognition, features: np.ndarray) -> np.ndarray:
     :param recognition: what logs teach
     :param features: features of a window, or their means over some
     """
-    place: np.ndarray = np.array(recognition.whitening) @ (features - np.array(recognition.centre))
+    whitening = np.array(recognition.whitening).reshape(-1, len(features))
+    place: np.ndarray = whitening @ (features - np.array(recognition.centre))
     return place
 
 

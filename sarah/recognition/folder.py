@@ -23,6 +23,9 @@ from sarah.runs.kinds import RECOGNITION
 from sarah.runs.run_episodes import RunEpisode
 from sarah.runs.run_folder import read_parameters
 
+ONE_FOR_ALL = "one set that is best on average for all robots of the logs"
+"""What parameters.json is, in words."""
+
 
 class RecognitionFolder(Folder):
     """The files of a recognition.
@@ -79,4 +82,4 @@ class RecognitionFolder(Folder):
         robot = PushedConfig(controller=self.recognition().conditions.controller)
         config = BALANCE.config_of(robot, stepping=tuple(vars(stepping).values()))
         spec = EpisodeSpec(tuple(vars(balance).values()), 0, BALANCE, config)
-        return RunEpisode("learned", "one set that is best on average for all robots of the logs", spec)
+        return RunEpisode("learned", ONE_FOR_ALL, spec)

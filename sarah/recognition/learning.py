@@ -12,7 +12,7 @@ from sarah.errors import ConfigurationError
 from sarah.operation.settings import BOX, SHIPPED
 from sarah.recognition.belief import DEVIATION, LENGTH, NOISE
 from sarah.recognition.felt import FEATURES, features_of
-from sarah.recognition.logs import LoggedRobot
+from sarah.recognition.logged import LoggedRobot
 from sarah.recognition.recognition import MOST, Kind, Layer, Matrix, Numbers, Recognition
 
 REPEATED = 3
@@ -26,6 +26,9 @@ FAR = 1.5
 """Distance beyond which a robot is unknown, over the largest one from a kind to its nearest neighbour."""
 MOST_WINDOWS = 1000
 """Number of windows of each kind that its process knows: the last ones. Its time goes with their third power."""
+LEAST_DEVIATION, LEAST_VARIANCE = 1e-2, 1e-4
+"""Least standard deviation within a kind that features are scaled by, and least variance of scaled ones in any
+direction: a log may have no noise."""
 UNITS = 16
 """Number of units in the hidden layer of a network."""
 
@@ -36,8 +39,8 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
     :param robots: robots of the logs; kinds that were never seen with the reference are left out
     :param kind: way of learning
     :param reference: parameters with which robots are recognised
-    :raises ConfigurationError: if there are fewer than two kinds, if each was seen only once, or if there are too many
-        robots
+    :raises ConfigurationError: if there are fewer than two kinds, if each was seen only once, if all feel the same, or
+        if there are too many robots
     """
     if len(robots) > MOST:
         raise ConfigurationError(f"the logs have {len(robots)} robots, and at most {MOST} can be learned from")
@@ -57,6 +60,8 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
     whitening = _whitening(features - means[labels])
     places = (means - centre) @ whitening.T
     between = np.linalg.norm(places[:, None] - places[None], axis=2) + np.diag(np.full(len(kinds), np.inf))
+    if not (far := FAR * between.min(axis=1).max()):
+        raise ConfigurationError("all kinds of robots in the logs feel the same: nothing tells them apart")
     sets = list(dict.fromkeys([reference, *_candidates(kind, kinds, places)]))
     rewards, deviations = _worth(sets, kinds)
     return Recognition(
@@ -65,7 +70,7 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
         reference=reference,
         centre=_plain(centre),
         whitening=_plain(whitening),
-        far=_rounded(FAR * between.min(axis=1).max()),
+        far=_rounded(far),
         kinds=tuple(kinds),
         places=_plain(places),
         sets=tuple(sets),
@@ -163,10 +168,10 @@ def _whitening(residuals: np.ndarray) -> np.ndarray:
     """Matrix that makes the variation within a kind the same in all directions, by a shrunk covariance."""
     from sklearn.covariance import LedoitWolf
 
-    deviations = np.maximum(residuals.std(axis=0), 1e-2)
+    deviations = np.maximum(residuals.std(axis=0), LEAST_DEVIATION)
     covariance = LedoitWolf(assume_centered=True).fit(residuals / deviations).covariance_
     values, vectors = np.linalg.eigh(covariance)
-    whitening: np.ndarray = (vectors / np.sqrt(values)).T / deviations
+    whitening: np.ndarray = (vectors / np.sqrt(np.maximum(values, LEAST_VARIANCE))).T / deviations
     return whitening
 
 

@@ -3,73 +3,41 @@
 from __future__ import annotations
 
 import csv
+import hashlib
 import json
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import Any
 
 from sarah.control.pattern_generator import STAND_SECONDS
 from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError, SarahError, shortened
-from sarah.files import is_text, read_lines
+from sarah.files import read_lines
 from sarah.logs.reading import Log
 from sarah.logs.topics import WINDOWS
-from sarah.number import number
-from sarah.operation.settings import BOX, OperationConfig, Parameters
-from sarah.operation.window import FELT
-from sarah.recognition.recognition import LONGEST_NAME, Conditions
+from sarah.operation.settings import BOX, OperationConfig
+from sarah.operation.window import FELT, Window
+from sarah.recognition.logged import LONGEST_ROBOT, LoggedRobot, check_names, logged_robots, logged_window, number_of
+from sarah.recognition.recognition import Conditions
 from sarah.robot.dimensions import check_dimensions, scale_of
 from sarah.robot.scale import Scale
 from sarah.runs.config_files import settings_by_key
 from sarah.runs.kinds import SESSION
-from sarah.runs.session import SessionSpec
+from sarah.runs.session import LARGEST_SEED, SessionSpec
 from sarah.runs.session_folder import MOST_WINDOWS, SessionFolder
 
 MCAP, TABLE = ".mcap", ".csv"
 """Endings of the names of logs that are files."""
 TIMES = ("settle_seconds", "measure_seconds")
 """Names of the times of a window."""
+LONGEST_KIND, DIGEST_LENGTH = LONGEST_ROBOT - len(f", seed {LARGEST_SEED}"), 8
+"""Largest number of characters in the name of a simulated robot's kind, and in the digest of a longer one."""
+BYTE_ORDER_MARK = "\N{ZERO WIDTH NO-BREAK SPACE}"
+"""First character of a table that a spreadsheet has written."""
 SLACK = 0.1
 """Time by which a window may be longer or shorter than it should be, in s."""
-LARGEST_VALUE = 1e6
-"""Largest number in a table, by amount."""
-LOWEST_REWARD, HIGHEST_REWARD = -0.01, 1.5
-"""Range of observed rewards; 1 is the best that a robot can do."""
-
-
-class LoggedWindow(NamedTuple):
-    """A window of a log: all that a robot knows of it.
-
-    :param parameters: P1 to P5 and V1 to V4
-    :param reward: observed reward
-    :param fell: whether the robot fell
-    :param felt: what the robot felt, in the order of :data:`~sarah.operation.window.FELT`
-    """
-
-    parameters: Parameters
-    reward: float
-    fell: bool
-    felt: tuple[float, ...]
-
-
-@dataclass(frozen=True)
-class LoggedRobot:
-    """What logs say of a robot from one change to the next.
-
-    :param name: name of the robot
-    :param kind: name of its kind, which robots have in common that differ only in what chance draws
-    :param conditions: conditions of the windows
-    :param scale: size of the robot
-    :param windows: its windows
-    """
-
-    name: str
-    kind: str
-    conditions: Conditions
-    scale: Scale
-    windows: tuple[LoggedWindow, ...]
 
 
 def read_logs(paths: Iterable[Path]) -> list[LoggedRobot]:
@@ -80,15 +48,15 @@ def read_logs(paths: Iterable[Path]) -> list[LoggedRobot]:
     :raises ConfigurationError: naming the log, if it cannot be read, has no window, or has other conditions than the
         first one
     """
-    robots: dict[str, LoggedRobot] = {}
+    robots: dict[tuple[str, str], LoggedRobot] = {}
     first: Conditions | None = None
     for path in paths:
         for robot in read_log(path):
             first = first or robot.conditions
             first.check(robot.conditions, str(path))
-            known = robots.get(robot.name)
+            known = robots.get((robot.kind, robot.name))
             windows = robot.windows if known is None else known.windows + robot.windows
-            robots[robot.name] = replace(robot, windows=windows)
+            robots[robot.kind, robot.name] = replace(robot, windows=windows)
     if not robots:
         raise ConfigurationError("give at least one log: a session's folder, an MCAP file, or a table of windows")
     return list(robots.values())
@@ -117,15 +85,21 @@ def _of_session(path: Path) -> list[LoggedRobot]:
     folder = SessionFolder.open(path)
     spec = folder.spec()
     conditions, scale = Conditions.of(spec.config), spec.config.robot.scale
-    return [
-        LoggedRobot(
-            *_names_of(folder, spec, changes),
-            conditions,
-            scale,
-            tuple(LoggedWindow(one.parameters, one.observed_reward, one.fell, one.felt) for one in windows),
-        )
-        for changes, windows in groupby(folder.windows(), lambda window: window.changes)
-    ]
+    robots = []
+    for changes, windows in groupby(folder.windows(), lambda window: window.changes):
+        if not 0 <= changes <= len(spec.config.changes):
+            raise ConfigurationError(f"{path} has a window after {changes} changes, of {len(spec.config.changes)}")
+        names = _names_of(folder, spec, changes)
+        check_names(path, *names)
+        its = tuple(logged_window(path, _row(one)) for one in windows)
+        robots.append(LoggedRobot(*names, conditions, scale, its))
+    return robots
+
+
+def _row(window: Window) -> dict[str, Any]:
+    """Values of a window by name."""
+    named = zip((*BOX.names, *FELT), (*window.parameters, *window.felt), strict=True)
+    return {"observed_reward": window.observed_reward, "fell": window.fell, **dict(named)}
 
 
 def _names_of(folder: SessionFolder, spec: SessionSpec, changes: int) -> tuple[str, str]:
@@ -134,7 +108,7 @@ def _names_of(folder: SessionFolder, spec: SessionSpec, changes: int) -> tuple[s
     if robot is None:
         kind = kind_of(spec.config, changes)
         return _robot_of(kind, spec.seed), kind
-    name = f"{robot.robot} on {robot.host}"[: LONGEST_NAME // 2]
+    name = _fitting(f"{robot.robot} on {robot.host}")
     return name, kind_of(spec.config) if robot.has_score else name
 
 
@@ -147,7 +121,15 @@ def kind_of(config: OperationConfig, changes: int = 0) -> str:
     values, usual = settings_by_key(config.robot_after(changes)), settings_by_key(OperationConfig().robot)
     physics = ("push.", "physics.")  # what the robot is put through, and how it is simulated
     differing = [f"{key} {values[key]}" for key in values if values[key] != usual[key] and not key.startswith(physics)]
-    return (", ".join(differing) or "as simulated")[: LONGEST_NAME // 2]
+    return _fitting(", ".join(differing) or "as simulated")
+
+
+def _fitting(name: str) -> str:
+    """A name that a log may have, also with a seed after it; of a longer one the beginning, and a digest of all."""
+    if len(name) <= LONGEST_KIND:
+        return name
+    digest = hashlib.sha256(name.encode()).hexdigest()[:DIGEST_LENGTH]
+    return f"{name[: LONGEST_KIND - DIGEST_LENGTH - 1]} {digest}"
 
 
 def facts_of(config: OperationConfig, seed: int) -> dict[str, str]:
@@ -183,7 +165,7 @@ def _of_mcap(path: Path) -> list[LoggedRobot]:
     _check_durations(path, values, shared)
     rows = [{**one, **{name: one.get(f"felt_{name}") for name in FELT}} for one in values]
     name = log.about.get("robot", path.stem)
-    return _robots(path, rows, name, log.about.get("kind", name), shared, scale_of(dimensions))
+    return logged_robots(path, rows, name, log.about.get("kind", name), shared, scale_of(dimensions))
 
 
 def _check_durations(path: Path, windows: Iterable[Mapping[str, Any]], conditions: Conditions) -> None:
@@ -197,70 +179,31 @@ def _check_durations(path: Path, windows: Iterable[Mapping[str, Any]], condition
 
 def _of_table(path: Path) -> list[LoggedRobot]:
     """Robots of a table with the columns of a session's ``windows.csv``, and perhaps one that names the robot."""
-    try:
-        lines = (line for line in read_lines(path, MOST_WINDOWS) if not line.startswith("#"))
-        rows = list(csv.DictReader(lines))
-    except (OSError, csv.Error) as error:
-        raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+    rows = _rows_of(path)
     robots: list[LoggedRobot] = []
-    own = (*TIMES, "control_rate")
+    first: dict[str, float] | None = None
     for row in rows:
-        given = {name: _number(path, row, name) for name in own if row.get(name)}
-        if row is rows[0]:
-            first = given
+        given = {name: number_of(path, row, name) for name in (*TIMES, "control_rate") if row.get(name)}
+        first = given if first is None else first
         if given != first:
             raise ConfigurationError(f"{path} has windows of {given}, and others of {first}")
-    conditions = from_mapping(Conditions(), first if rows else {})
-    for name, group in groupby(rows, lambda row: row.get("robot") or path.stem):
-        its = list(group)
-        robots += _robots(path, its, name, its[0].get("kind") or name, conditions, Scale())
+    conditions = from_mapping(Conditions(), first or {})
+    for (name, kind), its in groupby(rows, lambda row: (row.get("robot") or path.stem, row.get("kind"))):
+        robots += logged_robots(path, list(its), name, kind or name, conditions, Scale())
     return robots
 
 
-def _robots(
-    path: Path, rows: list[dict[str, Any]], name: str, kind: str, conditions: Conditions, scale: Scale
-) -> list[LoggedRobot]:
-    """Robots of rows that one robot wrote. Once it is changed, it is another one, of a kind of its own."""
-    for word in (name, kind):
-        if not is_text(word) or len(word) > LONGEST_NAME // 2:
-            most = LONGEST_NAME // 2
-            raise ConfigurationError(f"{path} names a robot {shortened(word)}: a name is one line of {most} characters")
-    counted = [(int(_number(path, row, "changes")) if row.get("changes") else 0, row) for row in rows]
-    return [
-        LoggedRobot(
-            f"{name}{change}",
-            f"{kind}{change}",
-            conditions,
-            scale,
-            tuple(_window(path, row) for _, row in group),
-        )
-        for changes, group in groupby(counted, lambda one: one[0])
-        for change in [f", change {changes}" if changes else ""]
-    ]
-
-
-def _window(path: Path, row: Mapping[str, Any]) -> LoggedWindow:
+def _rows_of(path: Path) -> list[dict[str, str]]:
+    """Rows of a table, without lines that begin with a number sign."""
     try:
-        parameters = BOX.checked([_number(path, row, name) for name in BOX.names])
-    except ConfigurationError as error:
-        raise ConfigurationError(f"{path}: {error}") from error
-    reward = _number(path, row, "observed_reward")
-    if not LOWEST_REWARD <= reward <= HIGHEST_REWARD:
-        raise ConfigurationError(f"{path}: observed_reward must be between 0 and 1, not {reward:g}")
-    fell = str(row.get("fell")) in ("1", "True")
-    return LoggedWindow(parameters, reward, fell, tuple(_number(path, row, name) for name in FELT))
-
-
-def _number(path: Path, row: Mapping[str, Any], name: str) -> float:
-    value = row.get(name)
-    if value is None:
-        raise ConfigurationError(
-            f"{path} has a window without {name}: the columns are those of a session's windows.csv"
-        )
-    try:
-        read = value if isinstance(value, float) else number(str(value))
-    except ValueError as error:
-        raise ConfigurationError(f"{path}: {name} {error}") from error
-    if not abs(read) <= LARGEST_VALUE:
-        raise ConfigurationError(f"{path}: {name} must be at most {LARGEST_VALUE:g} by amount, not {read:g}")
-    return read
+        lines = (line.removeprefix(BYTE_ORDER_MARK) for line in read_lines(path, MOST_WINDOWS))
+        reader = csv.DictReader((line for line in lines if not line.startswith("#")), strict=True)
+        columns = reader.fieldnames or ()
+        if repeated := next((name for name in columns if columns.count(name) > 1), None):
+            raise ConfigurationError(f"{path} has two columns {shortened(repeated)}")
+        rows = list(reader)
+    except (OSError, csv.Error) as error:
+        raise ConfigurationError(f"cannot read {path}: {getattr(error, 'strerror', None) or error}") from error
+    if any(None in row for row in rows):
+        raise ConfigurationError(f"{path} has a row with more cells than columns: numbers have a point, not a comma")
+    return rows

@@ -76,6 +76,8 @@ def check_dimensions(dimensions: Mapping[str, Any]) -> dict[str, float]:
     :raises DescriptionError: for an unknown name, a value that is not a number near the default, or feet in one place
         or through the floor
     """
+    if not isinstance(dimensions, Mapping):
+        raise DescriptionError(f"robot dimensions must be values by name, not {shortened(dimensions)}")
     known = known_dimensions()
     checked = {}
     for name, given in dimensions.items():

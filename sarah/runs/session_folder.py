@@ -20,6 +20,7 @@ from contextlib import AbstractContextManager
 from dataclasses import asdict
 from pathlib import Path
 
+from sarah.errors import shortened
 from sarah.files import read_lines, replace_text
 from sarah.number import number, whole_number
 from sarah.operation.settings import BOX, PARAMETERS, Parameters
@@ -213,6 +214,12 @@ def _window(row: Mapping[str, str]) -> Window:
         parameters=BOX.checked([number(row[name]) for name in NAMES]),
         score=number(row["score"]) if row["score"] else None,
         observed_reward=number(row["observed_reward"]),
-        fell=row["fell"] == "1",
+        fell=_fell(row["fell"]),
         felt=tuple(number(row[name]) for name in FELT),
     )
+
+
+def _fell(text: str) -> bool:
+    if text not in ("0", "1"):
+        raise ValueError(f"fell must be 0 or 1, not {shortened(text)}")
+    return text == "1"

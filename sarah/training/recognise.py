@@ -35,9 +35,10 @@ RECENT = 4
 LOSS = 0.1
 """Reward that windows of the careful learner must lose before the robot is recognised anew."""
 LOST_WINDOWS = 2
-"""Number of such windows in a row."""
+"""Number of such windows in a row, where the reference is worth less than was expected by more than that loss;
+elsewhere a single one is enough."""
 PATIENCE = 10
-"""Least number of windows between two recognitions."""
+"""Least number of windows between two recognitions where the reference costs that much."""
 CHANGED = 0.5
 """Distance of a robot from its former place at which it counts as changed, over that beyond which one is unknown."""
 
@@ -84,9 +85,11 @@ def operate_recognised(robot: OperatedRobot, first: Parameters, seed: int, recog
             known.observe(window)
             rewards.append(window.observed_reward)
             lost = lost + 1 if search.lost > LOSS else 0
-            if lost >= LOST_WINDOWS and robot.windows >= recognised + PATIENCE and not robot.is_over:
+            is_due = lost >= LOST_WINDOWS and robot.windows >= recognised + PATIENCE
+            is_cheap = known.reference_reward >= window.observed_reward + search.lost - LOSS
+            if lost and (is_due or is_cheap) and not robot.is_over:
                 recognised = robot.windows
-                if known.recognise():
+                if known.recognise(window):
                     break
             elif not lost and known.is_better_than(rewards[-RECENT:]):
                 break
@@ -104,16 +107,27 @@ class _Known:
         self._reference = recognition.reference
         self._observed: dict[Parameters, list[float]] = {}
         self._banned: set[Parameters] = set()
-        self._place = np.full(len(recognition.whitening), np.inf)
+        self._place = np.zeros(len(recognition.whitening))
+        self._sets = {recognition.reference, *recognition.sets}
 
-    def recognise(self) -> bool:
-        """Run the reference. If the robot is another one than before, nothing is known of it any longer.
+    @property
+    def reference_reward(self) -> float:
+        """Mean reward that was observed of the reference."""
+        return fmean(self._observed[self._reference])
 
+    def recognise(self, last: Window | None = None) -> bool:
+        """Feel the robot with the reference. If it is another one than before, nothing is known of it any longer.
+
+        :param last: last window, which is felt if it ran the reference
         :return: whether it is another one
         """
-        window, before = self._robot.run(self._reference), self._place
+        window, is_first = last, not self._observed
+        if window is None or window.parameters != self._reference:
+            window = self._run_reference()
+        if window.fell and not self._robot.is_over:  # it ended too soon for the robot to be felt
+            window = self._run_reference()
         place = place_of(self._recognition, features_of(window.felt, self._robot.config.robot.scale))
-        if np.linalg.norm(place - before) <= CHANGED * self._recognition.far:
+        if not is_first and np.linalg.norm(place - self._place) <= CHANGED * self._recognition.far:
             return False
         self._place, self._observed, self._banned = place, {self._reference: [window.observed_reward]}, set()
         return True
@@ -123,7 +137,7 @@ class _Known:
         while not self._robot.is_over and (parameters := self._better(self._present())) is not None:
             self.observe(self._robot.run(parameters))
             last = self._observed[parameters][-BANNING:]
-            if len(last) == BANNING and max(last) < fmean(self._observed[self._reference]) - WELL_BELOW:
+            if len(last) == BANNING and max(last) < self.reference_reward - WELL_BELOW:
                 self._banned.add(parameters)
 
     def observe(self, window: Window) -> None:
@@ -131,7 +145,7 @@ class _Known:
 
         :param window: window of the robot, with any parameters
         """
-        if window.parameters in self._recognition.sets:
+        if window.parameters in self._sets:
             self._observed.setdefault(window.parameters, []).append(window.observed_reward)
 
     def is_better_than(self, rewards: list[float]) -> bool:
@@ -153,8 +167,13 @@ class _Known:
         for parameters in sorted(self._observed, key=lambda one: one != start):
             for reward in self._observed[parameters]:
                 search.remember(parameters, reward)
-        search.stay_above(fmean(self._observed[self._reference]))
+        search.stay_above(self.reference_reward)
         return search
+
+    def _run_reference(self) -> Window:
+        window = self._robot.run(self._reference)
+        self.observe(window)
+        return window
 
     @property
     def _is_known(self) -> bool:
@@ -167,7 +186,7 @@ class _Known:
     def _present(self) -> float:
         """Reward of the best set so far: as it was observed, and of the reference also as it is believed."""
         reference = self._beliefs()[self._reference] if self._is_known else None
-        expected = fmean(self._observed[self._reference]) if reference is None else reference.reward
+        expected = self.reference_reward if reference is None else reference.reward
         return max([expected, *(fmean(self._observed[one]) for one in self._settled())])
 
     def _beliefs(self) -> dict[Parameters, Belief]:

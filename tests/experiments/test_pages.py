@@ -27,6 +27,7 @@ from experiments.robot.conditions import askew, biased
 from experiments.robot.first_training import settling
 from experiments.robot.hard_pushes import difference
 from experiments.robot.race import columns, curve_of, ranked
+from experiments.robot.recognised import CAREFUL, NEAREST, compared
 from experiments.tables import heading, shown, span, table, turned_table
 from sarah.agents import NAF
 from sarah.reports.race_entry import RaceCurve
@@ -271,3 +272,16 @@ def test_what_is_taken_out_or_wider_is_what_the_name_says() -> None:
     assert not any(isinstance(layer, nn.LayerNorm) for layer in nets["NAF, no normalisation"].value_net)
     assert not nets["NAF, no pull"].all_values(observation, action).mu.requires_grad
     assert nets["NAF, W without weights"].all_values(observation, action).distance.tolist() == [[0.0], [0.0]]
+
+
+def test_learners_are_compared_robot_by_robot() -> None:
+    """Differences of 0, 0.2 on one robot and 0.3 on the other: means 0.1 and 0.3, and 12.71 times an error of 0.1."""
+    scores = {("a", 0): (0.5, 0.5), ("a", 1): (0.7, 0.5), ("b", 0): (0.9, 0.6)}
+    rows = DataFrame(
+        {"robot": robot, "seed": seed, "learner": learner, "score": score}
+        for (robot, seed), pair in scores.items()
+        for learner, score in zip((NEAREST, CAREFUL), pair, strict=True)
+    )
+    found = compared(rows, "score", other=CAREFUL)
+    assert (found.mean, found.high, found.sessions) == (approx(0.2), approx(0.2 + 1.2706, abs=1e-4), 3)
+    assert math.isnan(compared(rows[rows.robot == "b"], "score").low)

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from sarah.episode.from_mapping import from_mapping
-from sarah.errors import ConfigurationError
+from sarah.errors import ConfigurationError, SarahError
 from sarah.logs.robot_log import RobotLog
 from sarah.logs.simulated import about_robot
 from sarah.operation.settings import BOX, SHIPPED, Change, OperationConfig
@@ -16,6 +16,7 @@ from sarah.operation.window import FELT, Window
 from sarah.recognition.logs import facts_of, read_logs
 from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
+from sarah.runs.session_robot import SessionRobot
 
 WEAK = Change(0.1, {"randomisation": {"actuator_bandwidth": 12.0}})
 
@@ -25,10 +26,10 @@ def window(index: int, changes: int = 0) -> Window:
     return Window(index, 6.0 * index, 6.0, changes, SHIPPED, 0.9, 0.8, index == 1, felt)
 
 
-def session(path: Path, seed: int = 0, **settings: Any) -> Path:
+def session(path: Path, seed: int = 0, robot_there: SessionRobot | None = None, **settings: Any) -> Path:
     config = OperationConfig(**{"changes": (WEAK,), **settings})
-    folder = SessionFolder.create(path, SessionSpec(learner="none", seed=seed, config=config))
-    for one in (window(0), window(1), window(2, changes=1)):
+    folder = SessionFolder.create(path, SessionSpec(learner="none", seed=seed, config=config), robot=robot_there)
+    for one in (window(0), window(1), window(2, changes=len(config.changes))):
         folder.append_window(one)
     return path
 
@@ -76,6 +77,10 @@ def test_a_table_of_the_same_columns_is_a_log(tmp_path: Path) -> None:
         ({"robot": "x" * 1000}, "names a robot"),
         ({"changes": "many"}, "changes must be a number"),
         ({"measure_seconds": 1e9}, "measure_seconds"),
+        ({"fell": "perhaps"}, "fell must be 0 or 1, not 'perhaps'"),
+        ({"fell": None}, "without fell"),
+        ({"changes": -1}, "changes must be a whole number from 0 on, not -1"),
+        ({"steps_per_second": "3,2"}, "steps_per_second must be a number"),
     ],
 )
 def test_a_hostile_table_is_named_with_what_is_wrong(changes: dict[str, Any], reason: str, tmp_path: Path) -> None:
@@ -83,6 +88,54 @@ def test_a_hostile_table_is_named_with_what_is_wrong(changes: dict[str, Any], re
     with pytest.raises(ConfigurationError) as error:
         read_logs([file])
     assert str(file) in str(error.value) and reason in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_table_whose_cells_do_not_fit_its_columns_is_refused(tmp_path: Path) -> None:
+    file = table(tmp_path / "table.csv")
+    text = file.read_text()
+    file.write_text(text.replace("0.8,", "0,8,", 1))
+    with pytest.raises(ConfigurationError, match=r"table\.csv has a row with more cells than columns"):
+        read_logs([file])
+    file.write_text(text.replace("observed_reward", "P1"))
+    with pytest.raises(ConfigurationError, match=r"table\.csv has two columns 'P1'"):
+        read_logs([file])
+
+
+def test_a_table_of_a_spreadsheet_is_a_log(tmp_path: Path) -> None:
+    file = table(tmp_path / "table.csv", fell="TRUE")
+    file.write_text(file.read_text().split("\n", 1)[1], encoding="utf-8-sig")
+    (robot,) = read_logs([file])
+    assert robot.windows[0].parameters == SHIPPED and robot.windows[0].fell
+
+
+def test_robots_of_one_name_and_two_kinds_stay_apart(tmp_path: Path) -> None:
+    files = [table(tmp_path / f"{kind}.csv", robot="mine", kind=kind) for kind in ("light", "heavy")]
+    assert [robot.kind for robot in read_logs(files)] == ["light", "heavy"]
+
+
+@pytest.mark.parametrize(
+    ("good", "bad", "reason"),
+    [
+        (",0.8,", ",1e300,", "observed_reward must be at most"),
+        (",0.8,0,0.0", ",0.8,0,1e300", "a_x_mean must be at most"),
+        (",0.8,0,", ",0.8,2,", "fell must be 0 or 1, not '2'"),
+        ("0,0.0,6.0,0,", "0,0.0,6.0,9,", "after 9 changes, of 1"),
+    ],
+)
+def test_a_hostile_session_is_named_with_what_is_wrong(good: str, bad: str, reason: str, tmp_path: Path) -> None:
+    path = session(tmp_path / "session")
+    text = (path / "windows.csv").read_text()
+    assert good in text
+    (path / "windows.csv").write_text(text.replace(good, bad, 1))
+    with pytest.raises(SarahError, match=reason) as error:
+        read_logs([path])
+    assert str(path) in str(error.value) and "\n" not in str(error.value)
+
+
+def test_a_robot_whose_name_moves_the_cursor_is_refused(tmp_path: Path) -> None:
+    path = session(tmp_path / "session", robot_there=SessionRobot(robot="\x1b[31mred"))
+    with pytest.raises(ConfigurationError, match="session names a robot"):
+        read_logs([path])
 
 
 @pytest.mark.parametrize(
@@ -126,11 +179,21 @@ def test_the_windows_of_an_mcap_file_are_a_log(tmp_path: Path) -> None:
     assert (robot.name, robot.kind, robot.conditions) == (same.name, same.kind, same.conditions)
 
 
+def test_kinds_with_many_differing_settings_stay_apart(tmp_path: Path) -> None:
+    shared = {"engine": "mujoco", "randomisation": {"actuator_bandwidth": 12.0, "delay_seconds": 0.03, "friction": 0.5}}
+    configs = [from_mapping(OperationConfig(), {"robot": {**shared, "payload": load}}) for load in (5.0, 8.0)]
+    files = [mcap(tmp_path / f"{seed}.mcap", facts_of(config, 2**31 - 1)) for seed, config in enumerate(configs)]
+    first, second = read_logs(files)
+    assert first.kind != second.kind and first.kind.startswith("engine mujoco, randomisation.friction")
+
+
 def test_an_mcap_file_with_other_windows_is_refused(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match=r"long\.mcap has a window of 9 s, not of 6 s"):
         read_logs([mcap(tmp_path / "long.mcap", duration=9.0)])
     with pytest.raises(ConfigurationError, match=r"settle_seconds must be between"):
         read_logs([mcap(tmp_path / "hostile.mcap", {"settle_seconds": "1e9"})])
+    with pytest.raises(ConfigurationError, match=r"dimensions must be values by name, not \[1\]"):
+        read_logs([mcap(tmp_path / "dimensions.mcap", {"dimensions": "[1]"})])
     with RobotLog(tmp_path / "empty.mcap", {}):
         pass
     with pytest.raises(ConfigurationError, match=r"empty\.mcap has no windows"):

@@ -1,11 +1,13 @@
 """The file of a recognition: what was written is read back, and what others wrote is refused in one line."""
 
+import dataclasses
 from pathlib import Path
 
 import pytest
 from known_robots import LOGS
 
 from sarah.errors import ConfigurationError
+from sarah.operation.window import FELT
 from sarah.recognition.learning import learn
 from sarah.recognition.recognition import Recognition, read_recognition, shipped_recognition
 
@@ -54,4 +56,7 @@ def test_a_hostile_file_is_named_with_what_is_wrong(text: str, reason: str, tmp_
 def test_nothing_is_known_without_logs() -> None:
     with pytest.raises(ConfigurationError, match="two kinds"):
         learn(LOGS[:1])
+    alike = [one._replace(felt=(1.0,) * len(FELT)) for one in LOGS[0].windows]
+    with pytest.raises(ConfigurationError, match="feel the same"):
+        learn([dataclasses.replace(robot, windows=tuple(alike)) for robot in LOGS])
     assert Recognition().kinds == ()

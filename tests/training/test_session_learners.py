@@ -13,7 +13,7 @@ from sarah.errors import ConfigurationError
 from sarah.operation.settings import BOX, SHIPPED, Parameters
 from sarah.operation.window import Window
 from sarah.recognition.learning import learn
-from sarah.recognition.recognition import Kind
+from sarah.recognition.recognition import Kind, Recognition
 from sarah.training.careful import CarefulSearch
 from sarah.training.recognise import operate_recognised
 from sarah.training.session_learners import LEARNERS
@@ -153,9 +153,10 @@ def test_nothing_is_pushed_where_the_shipped_ones_are_good() -> None:
     assert robot.mean_reward() > 0.92
 
 
-def test_an_unknown_robot_learns_on_from_the_shipped_ones() -> None:
+@pytest.mark.parametrize("recognition", [NEAREST, Recognition()], ids=["of logs", "empty"])
+def test_an_unknown_robot_learns_on_from_the_shipped_ones(recognition: Recognition) -> None:
     robot = KnownRobot(6.0)
-    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    operate_recognised(robot, SHIPPED, 0, recognition)
     assert not {top(-1.0), top(1.0)} & {window.parameters for window in robot.seen}
     assert len({window.parameters for window in robot.seen}) > 3
 
@@ -173,6 +174,20 @@ def test_a_robot_that_changes_is_recognised_anew() -> None:
     first = next(window for window in robot.seen if window.parameters == top(1.0))
     assert 120.0 <= first.begin <= 120.0 + 5 * 6.0
     assert robot.mean_reward(2.6) > 0.9
+
+
+@pytest.mark.parametrize("fall", [None, 1.8])
+def test_a_robot_that_was_suited_is_recognised_after_one_window(fall: float | None) -> None:
+    robot = KnownRobot(0.0, 4.0, then=1.0, change=2.5, fall=fall)
+    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    after = [window.parameters for window in robot.seen if window.begin >= 150.0]
+    assert top(1.0) in after[:3]
+
+
+def test_a_robot_that_falls_in_its_first_window_is_felt_again() -> None:
+    robot = KnownRobot(1.0, fall=0.0)
+    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    assert [window.parameters for window in robot.seen[:3]] == [SHIPPED, SHIPPED, top(1.0)]
 
 
 def test_another_robot_than_those_of_the_logs_is_refused() -> None:
