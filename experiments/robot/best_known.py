@@ -10,9 +10,11 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from pandas import DataFrame
 
 from experiments.record import Row
 from experiments.robot.balance_trainings import CHOOSING_SEED, NAMES, SHIPPED, SecondTrainingExperiment
+from experiments.tables import table
 from sarah.control.parameters import BALANCE_PARAMETERS, Parameters
 from sarah.episode.tasks import BALANCE
 from sarah.simulation.engines import Engine
@@ -68,6 +70,12 @@ class BestKnown(SearchExperiment):
 
 FULL = BestKnown()
 QUICK = BestKnown(time_limit=2.0, budget=5, engines=("mujoco",), seeds=1, candidates=4, choosing=3)
+
+
+def sets(rows: DataFrame) -> str:
+    """The sets."""
+    caption = "V1 to V4 that the trainings are compared with; P1 to P5 are the shipped ones."
+    return table(rows, ["engine", "run", *NAMES], caption)
 
 
 def successive_halving(

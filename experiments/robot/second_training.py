@@ -182,12 +182,10 @@ def compared(rows: DataFrame) -> str:
     for engine, group in _engines(rows).items():
         best = _scores(_known(group, BEST))
         for run in KNOWN:
-            known = _known(group, run)
-            values = {name: float(known[name].iloc[0]) for name in NAMES}
-            score = {"score": float(_scores(known).mean())} | dict(ratio("of_best", _scores(known), best))
-            found.append({"engine": engine, "run": run} | values | score)
+            scores = _scores(_known(group, run))
+            found.append({"engine": engine, "run": run, "score": scores.mean(), **ratio("of_best", scores, best)})
     caption = (
         f"The sets that trainings are compared with: mean score under {FULL.judging} hard pushes, and its share of the"
-        " best known score with its standard error. P1 to P5 are the shipped ones."
+        " best known score with its standard error."
     )
     return table(DataFrame(found), list(found[0]), caption, of_best=".1%")
