@@ -7,10 +7,9 @@ import numpy as np
 import pytest
 from laboratory import COARSE_PHYSICS, WAYS, need
 
+from sarah import EpisodeConfig, PushedConfig
 from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.registration import ENVIRONMENTS, OPERATION
-from sarah.episode.push import PushedConfig
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.workers import Workers
 from sarah.errors import SimulationError
 from sarah.operation.robot_in_operation import RobotInOperation

@@ -7,10 +7,8 @@ import dask
 import distributed  # noqa: F401  # its settings are there before a test changes one, and stay when that ends
 import pytest
 
+from sarah import EpisodeResult, EpisodeSpec, simulate
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.episode.episode import simulate
-from sarah.episode.result import EpisodeResult
-from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 
 SOMEBODYS = {

@@ -1,21 +1,19 @@
-"""The table of metrics: each number that an episode ends with is explained, summarised and written once.
-
-And what many episodes have in common.
-"""
+"""The table of metrics: each number of an episode is explained, summarised and written once; and many episodes."""
 
 import dataclasses
+import random
 from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 import pytest
-from laboratory import CONTROL_DT, RESULT
+from laboratory import RESULT
 
+from sarah import EpisodeConfig, EpisodeSpec
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.episode.episode import Episode
-from sarah.episode.evaluation import STATISTICS, Evaluation, evaluate
+from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE, STATISTICS, Evaluation, evaluate
 from sarah.episode.result import METRICS
-from sarah.episode.settings import EpisodeConfig
+from sarah.episode.workers import Workers
 from sarah.errors import ConfigurationError
 
 OTHER = dataclasses.replace(RESULT, score=0.4, vibration=3.0, final_position=(0.0, 0.0, 0.8), termination="fell")
@@ -64,28 +62,6 @@ def test_a_gait_is_one_by_sensors_that_lifts_its_feet(changes: dict[str, float],
 SHORT = EpisodeConfig(time_limit=4.0)
 
 
-def shaken_by(amplitude: float) -> Evaluation:
-    """The same episode, with flexions that a controller shakes at half the control rate."""
-    with Episode(SHORT, 0) as episode:
-        episode.stand()
-        simulation = episode.robot.simulation
-        send = simulation.set_targets
-
-        def shaken(targets: tuple[float, ...]) -> None:
-            flexion = amplitude if round(simulation.time / CONTROL_DT) % 2 else -amplitude
-            send((*targets[:2], flexion, flexion, *targets[4:]))
-
-        simulation.set_targets = shaken  # type: ignore[method-assign]
-        return Evaluation((episode.run(PAPER_STEPPING),))
-
-
-def test_chattering_hips_show_as_vibration() -> None:
-    calm, chattering = shaken_by(0.0), shaken_by(0.02)
-    assert chattering.chatters(calm) and not calm.chatters(calm)
-    assert chattering.mean("actuator_power") > calm.mean("actuator_power")
-    assert chattering.statistic("peak_hip_rate", "max") > 10 * calm.statistic("peak_hip_rate", "max")
-
-
 EVALUATED: Any = partial(evaluate, "stepping", PAPER_STEPPING, SHORT)
 MISTAKES: dict[str, Callable[[], object]] = {
     "seeds must not be empty: an evaluation needs an episode": lambda: EVALUATED([]),
@@ -100,3 +76,22 @@ MISTAKES: dict[str, Callable[[], object]] = {
 def test_arguments_of_another_kind_are_named(words: str) -> None:
     with pytest.raises(ConfigurationError, match=f"^{words}$"):
         MISTAKES[words]()
+
+
+@pytest.mark.slow
+def test_papers_parameters_step_on_20_seeds(workers: Workers) -> None:
+    evaluation = evaluate("stepping", PAPER_STEPPING, EpisodeConfig(), range(20), workers)
+    assert evaluation.survivors >= 19
+    assert all(2.3 <= result.steps_per_second <= 3.5 for result in evaluation.results if result.survived)
+    assert evaluation.statistic("drift", "max") < 0.08
+    assert evaluation.median("score") >= 0.78
+
+
+@pytest.mark.slow
+def test_no_clock_among_random_parameters_pays(workers: Workers) -> None:
+    generator = random.Random(0)
+    drawn = [tuple(generator.uniform(0.0, 2.0) for _ in range(5)) for _ in range(60)]
+    results = workers.simulate_all([EpisodeSpec(parameters, seed) for seed, parameters in enumerate(drawn)])
+    shares = [(min(result.shifts_by_sensors, result.lifts_by_sensors), result.score) for result in results]
+    clocks = [score for share, score in shares if share < SMALLEST_SENSOR_SHARE]
+    assert len(clocks) > 10 and max(clocks) < 0.6

@@ -56,10 +56,9 @@ def poses(robot: RobotDescription) -> Iterator[tuple[Vector, tuple[float, float,
 def still(robot: RobotDescription, force: np.ndarray, drift: tuple[float, float] = (0.0, 0.0)) -> Trace:
     """Trace of a robot that stands still while it is pushed."""
     ticks = 4
-    rows = {name: np.zeros(ticks) for name in ("rate", "tilt", "stable_x", "score", "steps_per_second")}
-    rows |= {name: np.zeros((ticks, 3)) for name in ("acceleration", "angular_rate")}
-    rows |= {name: np.zeros((ticks, 6)) for name in ("joints", "targets")}
-    rows |= {name: np.zeros((ticks, 4)) for name in ("ankles", "pressures")}
+    widths = dict.fromkeys(("acceleration", "angular_rate"), 3) | dict.fromkeys(("joints", "targets"), 6)
+    rows = {name: np.zeros((ticks, width)) for name, width in {**widths, "ankles": 4, "pressures": 4}.items()}
+    rows |= {name: np.zeros(ticks) for name in ("rate", "tilt", "stable_x", "score", "steps_per_second")}
     rows |= {"time": np.arange(ticks) / 10, "stance": np.ones(ticks), "push": np.tile(force, (ticks, 1))}
     rows["position"] = np.tile((*drift, robot.standing_height), (ticks, 1))
     rows["orientation"] = np.tile((0.0, 0.0, 0.0, 1.0), (ticks, 1))
@@ -129,10 +128,8 @@ def test_no_arrow_and_no_label_touches_the_edge(dimensions: dict[str, float]) ->
         assert not (marks[:5].any() or marks[-5:].any() or marks[:, :5].any() or marks[:, -5:].any())
 
 
-CAPTIONS = [
-    *(", ".join(f"P{index} = {index / 7:.2f}" for index in range(60)), "one\ntwo\nthree"),
-    "a_task_with_a_name_" + 20 * "without_end_" + ": P1 0.40",
-]
+NUMBERS = ", ".join(f"P{index} = {index / 7:.2f}" for index in range(60))
+CAPTIONS = [NUMBERS, "one\ntwo\nthree", "a_task_with_a_name_" + 20 * "without_end_" + ": P1 0.40"]
 
 
 @pytest.mark.parametrize("caption", CAPTIONS)

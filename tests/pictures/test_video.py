@@ -3,6 +3,7 @@
 import dataclasses
 import sys
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
@@ -11,10 +12,7 @@ from laboratory import need, purple
 from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
 
-from sarah.episode.episode import simulate
-from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BalanceConfig
+from sarah import BalanceConfig, EpisodeSpec, Push, simulate
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.pictures.video import GIF_SIZE, HEIGHT, WIDTH, check_path, frame_times, frames, write_video
@@ -26,8 +24,7 @@ PUSHED = BalanceConfig(time_limit=2.5, push=Push((100.0, 100.0), (180.0, 180.0),
 @pytest.fixture(scope="module")
 def trace() -> Trace:
     result = simulate(EpisodeSpec((0.0, 0.0, 0.0, 0.0), 0, "balance", PUSHED), record_trace=True)
-    assert result.trace is not None
-    return result.trace
+    return cast(Trace, result.trace)
 
 
 def film(trace: Trace, *times: float, caption: str = "") -> list[np.ndarray]:

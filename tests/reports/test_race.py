@@ -13,10 +13,7 @@ from typing import Any
 import pytest
 from laboratory import COARSE_PHYSICS
 
-from sarah.episode.episode import simulate
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING
+from sarah import STEPPING, EpisodeConfig, EpisodeSpec, simulate
 from sarah.episode.workers import Workers
 from sarah.errors import ResumeError, RunFolderError
 from sarah.files import locked
@@ -121,16 +118,15 @@ def test_a_race_does_not_mix_states_of_the_code(tmp_path: Path, monkeypatch: pyt
 
 
 def test_a_race_leaves_alone_what_is_not_its_own_or_in_use(tmp_path: Path) -> None:
-    precious = tmp_path / "naf-s0" / "parameters.json"
-    precious.parent.mkdir()
-    precious.write_text("{}")
-    with pytest.raises(RunFolderError, match="is not of a race"):
-        race(entries_of(("naf",), range(1), TINY, ONCE, tmp_path), Workers())
-    assert precious.read_text() == "{}"
     (entry,) = entries_of(("random",), range(1), TINY, ONCE, tmp_path)
-    begun = RunFolder.create(tmp_path / "random-s0", entry.config)
+    entry.folder.mkdir()
+    (entry.folder / "parameters.json").write_text("{}")
+    with pytest.raises(RunFolderError, match="is not of a race"):
+        race([entry], Workers())
+    assert (entry.folder / "parameters.json").read_text() == "{}"
+    begun = RunFolder.create(tmp_path / "begun", entry.config)
     with begun.journal_of(entry.config), pytest.raises(RunFolderError, match="in use by another training"):
-        run_entry(entry)
+        run_entry(dataclasses.replace(entry, folder=begun.path))
     assert begun.config() == entry.config
 
 
@@ -153,8 +149,6 @@ def test_a_race_leaves_out_what_another_is_at_until_its_end(tmp_path: Path) -> N
 
 
 HEAD = "episodes,score,seconds,evaluations\n"
-
-
 DAMAGED = [
     *(("race.csv", content) for content in ("", HEAD + 50 * "5,0.5,1,1\n", f"{HEAD}5,x,1,1\n10,0.5,1,1\n")),
     *(("race_scores.csv", f"seed,score\n{row}\n") for row in ("0,x", "1,0.5")),

@@ -1,16 +1,15 @@
-"""Robots of other sizes: what goes with length and mass, by Froude's rule."""
+"""Robots of other sizes: what goes with length and mass, by Froude's rule; and how targets go to their goals."""
 
 import dataclasses
 
 import pytest
 
+from sarah import Change, EpisodeConfig, OperationConfig, Push, PushedConfig
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
-from sarah.episode.push import Push, PushedConfig
 from sarah.episode.reward import frequency_hint, natural_step_frequency
-from sarah.episode.settings import EpisodeConfig
-from sarah.operation.settings import Change, OperationConfig
 from sarah.robot.description import describe_robot
 from sarah.robot.dimensions import dimensions_alike, scale_of
+from sarah.robot.filters import clipped, ramped
 from sarah.robot.scale import Scale
 
 
@@ -89,3 +88,10 @@ def test_a_robot_is_told_if_its_step_frequency_is_not_rewarded() -> None:
     assert frequency_hint(dataclasses.replace(small, step_frequency=6.0)) is None
     slow = dataclasses.replace(small, controller=dataclasses.replace(small.controller, minimum_phase_seconds=0.1))
     assert natural_step_frequency(slow) == pytest.approx(1 / 0.3)
+
+
+def test_a_ramp_goes_by_its_largest_change_and_a_clip_ends_at_its_limit() -> None:
+    goals = (-1.0, -0.05, 0.05, 1.0)
+    assert (
+        [ramped(0.0, goal, 0.1) for goal in goals] == [clipped(goal, 0.1) for goal in goals] == [-0.1, -0.05, 0.05, 0.1]
+    )

@@ -11,11 +11,9 @@ import pytest
 from laboratory import NEEDS_PYBULLET, advance
 from terminal import run
 
+from sarah import EpisodeConfig, EpisodeSpec, Physics, evaluate
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.evaluation import evaluate
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 from sarah.robot.description import describe_robot
@@ -23,7 +21,6 @@ from sarah.robot.reading import GRAVITY, Side
 from sarah.simulation import engines
 from sarah.simulation.build import simulator_of
 from sarah.simulation.engines import is_installed
-from sarah.simulation.physics import Physics
 from sarah.simulation.randomisation import NOMINAL
 
 pytestmark = pytest.mark.skipif(not is_installed("mujoco"), reason="needs mujoco")

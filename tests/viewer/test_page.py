@@ -17,16 +17,11 @@ import numpy as np
 import pytest
 import terminal
 
-from sarah.episode.episode import simulate
-from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.operation.settings import OperationConfig
+from sarah import BALANCE, BalanceConfig, EpisodeSpec, OperationConfig, Push, SessionSpec, simulate
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_episodes import episodes_of_run
 from sarah.runs.run_folder import RunFolder
-from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
 from sarah.training.operate import operate
 from sarah.viewer.scenario import Scenario

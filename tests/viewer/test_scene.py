@@ -12,15 +12,11 @@ import pytest
 import yourdfpy
 from laboratory import COARSE_PHYSICS
 
-from sarah.episode.episode import simulate
-from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BalanceConfig
+from sarah import BalanceConfig, EpisodeSpec, Push, Terrain, simulate
 from sarah.episode.trace import Trace
 from sarah.robot.description import describe_robot
 from sarah.runs.run_episodes import episode_of_parameters
 from sarah.scenery.camera import View
-from sarah.simulation.terrain import Terrain
 from sarah.viewer.page import Page
 from sarah.viewer.plots import CHARTS, Plots
 from sarah.viewer.scenario import Scenario
