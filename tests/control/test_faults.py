@@ -23,7 +23,6 @@ NARROW = ((-0.01, 0.3), (-0.02, 0.3), (-0.005, 0.005), (-0.8, 0.8), (-0.004, 0.0
 
 
 def stepping(balance: BalanceParameters = BALANCE, dt: float = DT, **options: Any) -> PatternGenerator:
-    """A pattern generator that has stood."""
     return stood(PatternGenerator(P, balance, dt, **options))
 
 

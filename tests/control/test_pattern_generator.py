@@ -115,7 +115,6 @@ def test_only_a_foot_off_the_floor_in_lift_or_land_makes_a_step() -> None:
 
 
 def test_lift_and_land_time_out_after_p4_and_p5() -> None:
-    """And last at least their minimum of 0.04 s."""
     generator = lifted((0.4, 1.3, 0.1, 0.5, 0.2))
     lift = tick_until_change(generator, reading(left=UNLOADED))
     assert lift == (PhaseChange(Phase.LIFT, by_sensors=False), 75)  # 0.5 (1 + 0.5) s

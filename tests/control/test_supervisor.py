@@ -90,7 +90,6 @@ def added(signal: str, index: int, value: float) -> Change:
 
 
 def at(tick: int, fault: Change) -> Change:
-    """A fault of a single tick."""
     return lambda since, reading, before: fault(since, reading, before) if since == tick else reading
 
 

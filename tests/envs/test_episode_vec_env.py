@@ -37,7 +37,6 @@ def played(slots: int, episodes: int = 4, seed: int = 1) -> tuple[list[np.ndarra
 
 
 def test_outcomes_come_in_order_after_the_slots_are_full() -> None:
-    """And slots change no episode."""
     seen = []
     for slots in (1, 3):
         observations, rewards, infos = played(slots)

@@ -22,7 +22,6 @@ KICKED: dict[str, Any] = {"push": {"newtons": 400.0, "duration": 0.3}}
 
 
 def test_gymnasium_knows_it_by_name() -> None:
-    """Changes are objects or mappings."""
     changes = [{"minute": 1.0, "settings": {"payload": 3.0}}]
     env: Any = gymnasium.make("SarahOperation-v0", minutes=3.0, robot={"payload": 2.0}, changes=changes)
     config = env.unwrapped.config

@@ -22,7 +22,6 @@ SOMEBODYS = {
 
 @pytest.fixture(scope="session")
 def paper_episode() -> EpisodeResult:
-    """30 s with the paper's parameters."""
     return simulate(EpisodeSpec(PAPER_STEPPING, seed=0), record_trace=True)
 
 

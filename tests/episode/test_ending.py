@@ -1,8 +1,8 @@
 """How an episode ends, also where an engine returns no numbers any more: as diverged, with a finite return."""
 
-import dataclasses
 import math
 from contextlib import nullcontext
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -117,4 +117,4 @@ def test_who_diverges_while_standing_leaves_nothing_to_show(seconds: float, monk
 def test_results_that_are_no_numbers_are_named() -> None:
     for name, value in (("vibration", math.nan), ("final_position", (0.0, math.inf, 0.8))):
         with pytest.raises(SimulationError, match=f"{name} of an episode must be finite"):
-            dataclasses.replace(RESULT, **dict[str, Any]({name: value}))
+            replace(RESULT, **dict[str, Any]({name: value}))

@@ -19,7 +19,6 @@ PRINTED = RewardSettings(reward_form="printed")
 
 
 def swinging(height: float) -> Any:
-    """A robot whose left foot swings, so high."""
     generator = SimpleNamespace(phase=Phase.LIFT, swing=Side.LEFT)
     return SimpleNamespace(generator=generator, simulation=SimpleNamespace(sole_height={Side.LEFT: height}.get))
 

@@ -1,10 +1,7 @@
 """The table of metrics: each number of an episode is explained, summarised and written once; and many episodes."""
 
-import dataclasses
 import random
-from collections.abc import Callable
-from functools import partial
-from typing import Any
+from dataclasses import replace
 
 import pytest
 from laboratory import RESULT
@@ -14,9 +11,8 @@ from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE, STATISTICS, Evaluation, evaluate
 from sarah.episode.result import METRICS
 from sarah.episode.workers import Workers
-from sarah.errors import ConfigurationError
 
-OTHER = dataclasses.replace(RESULT, score=0.4, vibration=3.0, final_position=(0.0, 0.0, 0.8), termination="fell")
+OTHER = replace(RESULT, score=0.4, vibration=3.0, final_position=(0.0, 0.0, 0.8), termination="fell")
 
 
 def test_every_number_of_a_result_is_a_metric_with_a_meaning() -> None:
@@ -56,26 +52,10 @@ def test_an_evaluation_holds_every_statistic_of_the_table() -> None:
     + [({"sole_clearance": clearance}, clearance >= 0.01) for clearance in (0.0099, 0.01)],
 )
 def test_a_gait_is_one_by_sensors_that_lifts_its_feet(changes: dict[str, float], is_gait: bool) -> None:
-    assert Evaluation((dataclasses.replace(RESULT, **changes),)).is_gait == is_gait  # type: ignore[arg-type]
+    assert Evaluation((replace(RESULT, **changes),)).is_gait == is_gait  # type: ignore[arg-type]
 
 
 SHORT = EpisodeConfig(time_limit=4.0)
-
-
-EVALUATED: Any = partial(evaluate, "stepping", PAPER_STEPPING, SHORT)
-MISTAKES: dict[str, Callable[[], object]] = {
-    "seeds must not be empty: an evaluation needs an episode": lambda: EVALUATED([]),
-    r"seeds must be several whole numbers, such as range\(10\), not 3": lambda: EVALUATED(3),
-    r"workers must be an executor, as in .*, not 4": lambda: EVALUATED([1], 4),
-    r"unknown metric 'scor', did you mean 'score'\? .*": lambda: Evaluation((RESULT,)).mean("scor"),
-    r"unknown statistic 'medain', did you mean .*": lambda: Evaluation((RESULT,)).statistic("score", "medain"),
-}
-
-
-@pytest.mark.parametrize("words", MISTAKES)
-def test_arguments_of_another_kind_are_named(words: str) -> None:
-    with pytest.raises(ConfigurationError, match=f"^{words}$"):
-        MISTAKES[words]()
 
 
 @pytest.mark.slow

@@ -14,7 +14,7 @@ from sarah.episode import tasks
 from sarah.episode.tasks import BALANCE, STEPPING, TASKS, BalanceConfig, tasks_in
 from sarah.episode.trial import try_task
 from sarah.episode.workers import Workers, begin_episode, close_waiting_episodes, finish_episode
-from sarah.errors import ConfigurationError, SarahError, TaskError
+from sarah.errors import ConfigurationError, SarahError
 
 THRIFTY = """
 import dataclasses
@@ -102,27 +102,26 @@ SILENT = "type('Odd', (Exception,), {'__str__': lambda e: 1 / 0})"
         ("reward=lambda *_: throw(ValueError('one\\ntwo'))", "^my_task.py, line 1: ValueError: one two$"),
         ("reward=lambda *_: throw(SystemExit(0))", "my_task.py, line 1: SystemExit: 0"),
         (f"reward=lambda *_: throw({SILENT})", "an exception without a message"),
+        ("reward=lambda *_: seen.append(1) or len(seen)", "its functions must depend on their arguments only"),
         ("ending=lambda *_: 'it fell'", "a short name of its own such as 'jumped', not 'it fell'"),
         ("ending=lambda *_: 'time_limit'", "a short name of its own such as 'jumped', not 'time_limit'"),
         ("draw_push=lambda *_: 5", "draw_push must return a DrawnPush or None, not 5"),
         ("controller_parameters=lambda *_: 5", NOT_STEPPING),
         ("controller_parameters=lambda *_: (sarah.SteppingParameters(*[float('nan')] * 5), None)", NOT_STEPPING),
+        ("disturbances=lambda spec: 1 / 0", "my_task.py, line 2: ZeroDivisionError: division by zero"),
+        ("disturbances=lambda spec: {1.0}", "JUMP: disturbances must return a tuple of finite numbers, not {1.0}"),
+        ("disturbances=lambda spec: (1.0, float('nan'))", r"a tuple of finite numbers, not \(1.0, nan\)"),
+        ("disturbances=lambda spec: (len(seen), seen.append(1))[:1]", "disturbances must depend on its argument only"),
+        ("disturbances=lambda spec: spec.parameters", "must not depend on the parameters, which are what is learned"),
+        ("disturbances=lambda spec: [0.0] * (1 + (spec.seed > 9))", "as many numbers for every episode, not 1 and 2"),
     ],
 )
-def test_mistakes_of_functions_are_named(tmp_path: Path, function: str, words: str) -> None:
-    text = "import dataclasses, sarah; throw = lambda error: (_ for _ in ()).throw(error)\n"
+def test_a_trial_finds_mistakes_of_functions(tmp_path: Path, function: str, words: str) -> None:
+    text = "import dataclasses, sarah; seen = []; throw = lambda error: (_ for _ in ()).throw(error)\n"
     text += f"JUMP = dataclasses.replace(sarah.STEPPING, name='jump', {function})\n"
-    task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
-    with pytest.raises(SarahError, match=words):
-        sarah.simulate(sarah.EpisodeSpec(PARAMETERS, 0, task, SHORT))
-
-
-def test_a_trial_finds_a_function_that_remembers(tmp_path: Path) -> None:
-    text = f"seen = []\n{REPLACED}'jump', reward=lambda *_: seen.append(1) or len(seen))\n"
-    task = sarah.load_task(f"{written(tmp_path, text)}:JUMP")
-    with pytest.raises(TaskError, match="its functions must depend on their arguments only"):
-        try_task(task, task.episode)
-    try_task(sarah.load_task(f"{written(tmp_path)}:THRIFTY"), SHORT)
+    with pytest.raises(SarahError, match=words) as caught:
+        try_task(sarah.load_task(f"{written(tmp_path, text)}:JUMP"), SHORT)
+    assert "\n" not in str(caught.value)
 
 
 def test_two_tasks_of_a_script_with_one_name_do_not_mix() -> None:
@@ -165,7 +164,6 @@ def test_another_tasks_settings_are_refused_in_one_line(make: Any, task: str) ->
 
 
 def test_settings_go_to_another_task_with_all_that_they_share() -> None:
-    """Only the balance task has a push and given legs."""
     assert BALANCE.has_push and not STEPPING.has_push and STEPPING.draw_push(STEPPING.episode, 1) is None
     config = BalanceConfig(time_limit=7.0, stepping=(0.1,) * 5)
     assert STEPPING.config_of(config) == EpisodeConfig(time_limit=7.0)

@@ -24,7 +24,7 @@ from sarah.episode import cluster as cluster_module
 from sarah.episode import workers as workers_module
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.workers import Workers, begin_episode, finish_episode
-from sarah.errors import ConfigurationError, WorkersError
+from sarah.errors import WorkersError
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
@@ -43,7 +43,6 @@ def train_in(folder: Path, workers: Workers | None) -> RunFolder:
 
 
 def learned_bytes(run_folder: RunFolder) -> dict[str, bytes]:
-    """What must not depend on who simulated."""
     weights = zipfile.ZipFile(run_folder.model_path).read("policy.pth")
     texts = {name: (run_folder.path / name).read_bytes() for name in ("episodes.csv", "parameters.json")}
     return {**texts, "weights": weights}
@@ -169,16 +168,3 @@ def test_waiting_episodes_are_bounded_and_forgotten(stood: Any, monkeypatch: pyt
             begin_episode(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))
         assert len(stood.open) == 2
     assert not stood.open
-
-
-def test_bad_workers_are_refused() -> None:
-    for arguments, words in (
-        ((-1,), "workers must be between 0 and 256, not -1"),
-        ((1.5,), r"^workers must be a whole number, not 1\.5$"),
-        ((2, "tcp://127.0.0.1:1"), "give one of the two"),
-    ):
-        with pytest.raises(ConfigurationError, match=words):
-            Workers(*arguments)
-    for workers in (Workers(2), Workers(scheduler="tcp://127.0.0.1:1")):
-        with pytest.raises(ConfigurationError, match="workers start in a with statement"):
-            workers.submit(simulate, SPEC)

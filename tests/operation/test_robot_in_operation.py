@@ -1,7 +1,7 @@
 """The robot that goes on: windows, falls, changes and pushes; and the displacement that its legs tell."""
 
-import dataclasses
 import math
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -104,7 +104,7 @@ def test_after_a_fall_the_robot_is_the_same_with_other_noise() -> None:
 
 def test_a_change_holds_from_the_next_window_and_standing() -> None:
     config = quick(minutes=0.2, changes=(Change(0.1, {"payload": 20.0}),))
-    changed, unchanged = run_all(config), run_all(dataclasses.replace(config, changes=()))
+    changed, unchanged = run_all(config), run_all(replace(config, changes=()))
     at = next(index for index, window in enumerate(changed) if window.changes)
     assert changed[:at] == unchanged[:at]
     assert changed[at].begin >= 6.0 and changed[at].seconds == pytest.approx(2.0, abs=0.5)

@@ -1,7 +1,7 @@
 """Videos of episodes."""
 
-import dataclasses
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import cast
 
@@ -43,9 +43,7 @@ def test_frames_show_robot_and_words(trace: Trace) -> None:
 
 
 def test_a_score_that_nobody_knows_is_not_written(trace: Trace) -> None:
-    ((known,), (unknown,)) = (
-        film(one, 1.0) for one in (trace, dataclasses.replace(trace, score=np.full(len(trace), np.nan)))
-    )
+    ((known,), (unknown,)) = (film(one, 1.0) for one in (trace, replace(trace, score=np.full(len(trace), np.nan))))
     rows, columns = np.nonzero((known != unknown).any(axis=-1))
     assert len(rows) > 100 and columns.max() < WIDTH / 4
     assert not np.less(unknown[rows.min() : rows.max()], 140).all(axis=-1)[:, : WIDTH // 5].any()

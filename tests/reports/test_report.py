@@ -1,12 +1,12 @@
 """A run as one page, and what TensorBoard shows of it."""
 
 import base64
-import dataclasses
 import json
 import re
 import shutil
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -87,7 +87,7 @@ def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[Any]:
 
 @pytest.mark.parametrize("task", TASKS)
 def test_a_run_is_read_once_and_no_episode_is_simulated_twice(task: str, counts: Counter[Any], tmp_path: Path) -> None:
-    episode = dataclasses.replace(TASKS[task].episode, time_limit=1.2, physics=PHYSICS)
+    episode = replace(TASKS[task].episode, time_limit=1.2, physics=PHYSICS)
     config = TrainingConfig(task, episodes=1, episode=episode)
     run, learned = RunFolder.create(tmp_path / "run", config), (0.5,) * len(TASKS[task].parameters)
     run.append_episode(0, EpisodeSpec(learned, 2**31, task, episode), RESULT)
@@ -138,7 +138,7 @@ def test_tensorboard_shows_curves_in_groups_and_pictures(run: RunFolder) -> None
 @NEEDS_PYBULLET
 def test_pictures_change_nothing_of_a_training(run: RunFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
-    config = dataclasses.replace(run.config(), pictures=0)
+    config = replace(run.config(), pictures=0)
     without = RunFolder.create(tmp_path / "without", config)
     train(config, without)
     for name in ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json"):

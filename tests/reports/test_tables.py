@@ -1,7 +1,7 @@
 """Tables of pushes, of grounds, and of engines: the same conditions for every controller, and honest intervals."""
 
-import dataclasses
 import math
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -25,7 +25,7 @@ from sarah.robot.scale import Scale
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 
-FALL = dataclasses.replace(RESULT, score=0.1, termination="left_box", final_position=(0.3, 0.0, 0.8))
+FALL = replace(RESULT, score=0.1, termination="left_box", final_position=(0.3, 0.0, 0.8))
 
 
 def pushed(degrees: float, result: EpisodeResult = RESULT, newtons: float = 100.0) -> PushedEpisode:
@@ -66,7 +66,7 @@ def test_the_interval_is_wilsons() -> None:
 
 def test_eval_prints_the_table_and_leaves_it_with_a_plot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     fallen = [pushed(degrees, FALL, newtons) for newtons in (50.0, 100.0) for degrees in range(0, 360, 45)]
-    up = [dataclasses.replace(episode, result=RESULT) for episode in fallen]
+    up = [replace(episode, result=RESULT) for episode in fallen]
     monkeypatch.setattr(robustness, "push_many", lambda *_, **__: [fallen, up])
     printed = done("sarah-eval", "1,0,1,0", "--robustness", "--out", "out", cwd=tmp_path).stdout
     assert {path.name for path in (tmp_path / "out").iterdir()} == {"robustness.md", "robustness.png", "robustness.pdf"}
@@ -132,7 +132,7 @@ def test_command_writes_table_and_picture(tmp_path: Path, monkeypatch: pytest.Mo
 def test_the_picture_shows_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn: list[Figure] = []
     monkeypatch.setattr(terrain_figure, "save", lambda figure, path: drawn.append(figure))
-    slow, fast = (dataclasses.replace(RESULT, steps_per_second=steps) for steps in (2.0, 4.0))
+    slow, fast = (replace(RESULT, steps_per_second=steps) for steps in (2.0, 4.0))
     evaluations = {one: Evaluation((fast if one.kind == "friction" else slow,) * 3) for one in situations(Scale())}
     terrain_figure.draw_terrain(evaluations, tmp_path / "terrain")
     for axis in drawn[0].axes:
@@ -142,7 +142,7 @@ def test_the_picture_shows_every_row(tmp_path: Path, monkeypatch: pytest.MonkeyP
 
 
 def scoring(score: float) -> Evaluation:
-    return Evaluation((dataclasses.replace(RESULT, score=score),))
+    return Evaluation((replace(RESULT, score=score),))
 
 
 LEARNED = EpisodeSpec(PAPER_STEPPING, 0, STEPPING, EpisodeConfig(engine="mujoco"))

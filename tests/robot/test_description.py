@@ -101,8 +101,6 @@ def test_bad_dimensions_are_refused_by_name(dimensions: dict[str, float], messag
 
 
 def missing(kind: str, name: str, part: str) -> Change:
-    """A change that removes a part of an element."""
-
     def change(root: ElementTree.Element) -> None:
         element = find(root, kind, name)
         element.remove(next(element.iter(part)))
@@ -111,7 +109,6 @@ def missing(kind: str, name: str, part: str) -> Change:
 
 
 def with_value(kind: str, name: str, part: str, /, **values: str) -> Change:
-    """A change that gives other values to a part of an element."""
     return lambda root: next(find(root, kind, name).iter(part)).attrib.update(values)
 
 
@@ -150,16 +147,6 @@ def test_two_points_have_the_inertia_of_a_dumbbell() -> None:
     pair = together([MassProperties(1.0, np.array((x, 0.0, 0.5)), NOTHING) for x in (-1.0, 1.0)])
     assert pair.mass == 2.0 and pair.centre == pytest.approx((0.0, 0.0, 0.5))
     assert np.diag(pair.inertia) == pytest.approx((0.0, 2.0, 2.0))
-
-
-def test_the_default_robot_stands_over_its_feet() -> None:
-    robot = describe_robot()
-    links = links_of(robot)
-    whole = together(links.values())
-    assert {name: link.mass for name, link in links.items()} == robot.masses
-    assert whole.mass == pytest.approx(30.0) and whole.centre[0] == pytest.approx(0.0)
-    soles = np.array(robot.standing_soles)
-    assert (soles.min(axis=0)[:2] < whole.centre[:2]).all() and (whole.centre[:2] < soles.max(axis=0)[:2]).all()
 
 
 @pytest.mark.parametrize("dimensions", [{"thigh_length": 0.2, "forefoot_contact": 0.2, "hip_offset": 0.2}])

@@ -140,7 +140,6 @@ def test_changes_of_one_are_made_alike_in_another() -> None:
 
 
 def test_settings_from_python_are_checked_as_those_of_a_file() -> None:
-    """And may be numbers of numpy."""
     training, change, session, naf = (cast(Any, k) for k in (TrainingConfig, Change, SessionSpec, NAFSettings))
     for make, words in (
         (lambda: training(episodes=10.5), "episodes must be a whole number, not 10.5"),

@@ -1,7 +1,7 @@
 """The folder of a training: its tables, its parameters, the episodes to choose from, and what is told of an episode."""
 
-import dataclasses
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -141,14 +141,14 @@ def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: l
 
 
 SPEC = EpisodeSpec((1.0, 0.0, 1.0, 0.0), 5, BALANCE, BalanceConfig(time_limit=1.5, push=Push(40.0, 90.0, 1.2)))
-UNPUSHED = dataclasses.replace(BALANCE.episode, push=Push(0.0))
+UNPUSHED = replace(BALANCE.episode, push=Push(0.0))
 
 
 def test_the_pushes_of_the_trace_are_told() -> None:
     trace = simulate(SPEC, record_trace=True).trace
     assert trace is not None
     assert told_of(SPEC, trace) == ["push of 40 N forward at 1.20 s", "time_limit 1.5"]
-    still = dataclasses.replace(trace, push=0.0 * trace.push)
+    still = replace(trace, push=0.0 * trace.push)
     assert told_of(SPEC, still) == ["time_limit 1.5"]  # it ended before its push
 
 
@@ -168,14 +168,14 @@ DIMENSIONS, WIDER = dimensions_alike(1.1, 1.0), {"torso_width": 0.3, "sole_half_
     ],
 )
 def test_settings_that_differ_are_told(settings: Any, told: list[str]) -> None:
-    changed = dataclasses.replace(UNPUSHED, **settings)
+    changed = replace(UNPUSHED, **settings)
     assert told_settings(EpisodeSpec(SPEC.parameters, 5, BALANCE, changed)) == told
     assert told_settings(EpisodeSpec(PAPER_STEPPING, 0)) == []
 
 
 def test_what_an_option_changes_has_both_values() -> None:
-    changed = dataclasses.replace(UNPUSHED, payload=3.0, stepping=(0.5, 1.0, 0.0, 1.0, 1.0))
-    other = dataclasses.replace(UNPUSHED, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
+    changed = replace(UNPUSHED, payload=3.0, stepping=(0.5, 1.0, 0.0, 1.0, 1.0))
+    other = replace(UNPUSHED, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
     stepping = "stepping 0.5, 1, 0, 1, 1 instead of 0.5, 1, 0, 1, 0.75"
     assert list(differences(changed, other)) == ["payload 3 instead of 0", stepping]
     assert list(differences(PushedConfig(push=UNPUSHED.push), UNPUSHED)) == []  # only one of both has P1 to P5
@@ -186,8 +186,8 @@ def test_a_special_setting_that_was_not_kept_has_both_values() -> None:
         *((0.0, 0.0, []), (3.0, 0.0, ["payload 3"]), (3.0, 3.0, ["payload 3"])),
         *((3.0, 5.0, ["payload 3 instead of 5"]), (0.0, 5.0, ["payload 0 instead of 5"])),
     ):
-        subject = dataclasses.replace(BALANCE.episode, payload=of_subject)
-        assert list(changed_settings(BALANCE, dataclasses.replace(subject, payload=payload), subject)) == words
+        subject = replace(BALANCE.episode, payload=of_subject)
+        assert list(changed_settings(BALANCE, replace(subject, payload=payload), subject)) == words
 
 
 def test_the_ground_is_told_as_the_seed_draws_it() -> None:

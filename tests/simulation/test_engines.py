@@ -1,9 +1,9 @@
 """The second engine: the same robot, the same bytes each time, and an error where it is not installed."""
 
-import dataclasses
 import math
 import subprocess
 import sys
+from dataclasses import replace
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 
@@ -45,7 +45,7 @@ def test_robot_steps_as_well_in_mujoco_as_in_pybullet() -> None:
 )
 def test_mujoco_takes_at_least_500_steps_a_second(asked: Physics, taken: Physics) -> None:
     results = [
-        simulate(EpisodeSpec(PAPER_STEPPING, 1, config=dataclasses.replace(SHORT, physics=physics)))
+        simulate(EpisodeSpec(PAPER_STEPPING, 1, config=replace(SHORT, physics=physics)))
         for physics in (asked, taken, Physics(1000))
     ]
     assert results[0] == results[1] != results[2]

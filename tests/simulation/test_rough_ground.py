@@ -1,7 +1,7 @@
 """Rough ground: one surface for both engines, for spawning and for clearances; and friction of its own per foot."""
 
-import dataclasses
 import math
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -30,20 +30,13 @@ HEIGHTS = {
 }
 
 
-@pytest.mark.parametrize(("place", "height"), HEIGHTS.items())
-def test_height_between_nodes_is_that_of_their_triangle(place: tuple[float, float], height: float) -> None:
-    assert HILL.height(*place) == pytest.approx(height)
-
-
-def test_distance_is_along_the_normal_of_the_triangle() -> None:
+def test_heights_distances_and_highest_places_of_a_hill_by_hand() -> None:
     """Right of the hilltop the surface falls by 1 in 10."""
+    for place, height in HEIGHTS.items():
+        assert HILL.height(*place) == pytest.approx(height), place
     assert HILL.distance((0.05, 0.01, 0.105)) == pytest.approx((0.1 + 0.001) / math.sqrt(1.02), rel=1e-3)
     assert HILL.distance((0.05, 0.0, 0.004)) < 0.0
-    assert LEVEL.distance((3.0, -2.0, 0.25)) == HILL.distance((3.0, -2.0, 0.25)) == 0.25
-    assert LEVEL.reach == math.inf
-
-
-def test_the_highest_place_of_a_rectangle_is_found() -> None:
+    assert LEVEL.distance((3.0, -2.0, 0.25)) == HILL.distance((3.0, -2.0, 0.25)) == 0.25 and LEVEL.reach == math.inf
     assert HILL.highest(-0.05, 0.03, -0.04, 0.06) == pytest.approx(0.01)  # a node within
     assert HILL.highest(0.02, 0.05, 0.02, 0.05) == pytest.approx(0.006)  # a corner
     assert HILL.highest(0.01, 0.04, -0.08, -0.05) == pytest.approx(0.005)  # where an edge crosses a line of the grid
@@ -77,9 +70,9 @@ def test_bumps_stay_within_their_height_and_reach_far_enough(roughness: float, c
 
 def test_a_seed_draws_the_same_bumps_at_any_height() -> None:
     sloping = Terrain(slope_degrees=(0.0, 9.0), friction_left=(0.2, 0.4))
-    low, high = (draw_ground(dataclasses.replace(sloping, roughness=(height,) * 2), 7) for height in (0.01, 0.02))
+    low, high = (draw_ground(replace(sloping, roughness=(height,) * 2), 7) for height in (0.01, 0.02))
     assert np.array(high.heights) == pytest.approx(2 * np.array(low.heights))
-    assert dataclasses.replace(high, heights=low.heights) == low
+    assert replace(high, heights=low.heights) == low
     assert low.gravity == draw_ground(Terrain(slope_degrees=(0.0, 9.0)), 7).gravity
     one, other = (np.ravel(draw_ground(ROUGH, seed).heights) for seed in (1, 2))
     assert abs(np.corrcoef(one, other)[0, 1]) < 0.15

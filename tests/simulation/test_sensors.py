@@ -25,7 +25,6 @@ DEVIATIONS = np.array([0.2] * 3 + [0.02] * 3 + [3.0] * 4)
 
 
 def sensors(**settings: Any) -> ImperfectSensors:
-    """Sensors that are perfect but for some settings."""
     return ImperfectSensors(SensorConditions(**settings), DT)
 
 
@@ -96,7 +95,6 @@ def test_inertial_signals_follow_a_step_at_their_bandwidth(bandwidth: float) -> 
 
 
 def test_noise_is_that_of_numpys_generator_with_the_seed() -> None:
-    """White, with its standard deviation, also after it has been drawn anew."""
     noisy = sensors(**NOISE, seed=7)
     drawn = np.random.default_rng(7).standard_normal((1500, 10)) * DEVIATIONS
     for noise in drawn:

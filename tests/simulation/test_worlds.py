@@ -16,7 +16,9 @@ import pytest
 from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, WAYS
 
 from sarah import STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.episode.episode import Episode, simulate
+from sarah.episode.workers import Workers
 from sarah.errors import SimulationError
 from sarah.robot.description import describe_robot
 from sarah.simulation.build import simulator_of
@@ -49,7 +51,6 @@ def disturbed(engine: str, disturb: Callable[[Any], object]) -> EpisodeSpec:
 
 
 def add_a_box(client: int) -> None:
-    """Put something where the robot stands."""
     box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=(0.2, 0.2, 0.2), physicsClientId=client)
     pybullet.createMultiBody(1.0, box, physicsClientId=client)
 
@@ -214,9 +215,10 @@ def test_mujocos_warnings_of_other_models_still_come() -> None:
 
 def test_what_holds_a_world_cannot_be_copied(engine: str) -> None:
     episode = Episode(short(engine), 0)
-    renderer = [Renderer(describe_robot())] if engine == "pybullet" else []
-    for holder in (episode, episode.robot, episode.robot.simulation, *renderer):
+    others = [Renderer(describe_robot())] if engine == "pybullet" else []
+    in_flight = EpisodeVecEnv("stepping", short(engine), 2, 1, Workers())
+    for holder in (episode, episode.robot, episode.robot.simulation, in_flight, *others):
         for way in WAYS.values():
             with pytest.raises(SimulationError, match=f"^{type(holder).__name__} holds simulated worlds"):
                 way(holder)
-        holder.close()  # type: ignore[attr-defined]
+        holder.close()

@@ -1,7 +1,7 @@
 """What the page plays: an episode as its sliders make it, by the clock; and what its table leaves out."""
 
-import dataclasses
 import time
+from dataclasses import replace
 from pathlib import Path
 from queue import Queue
 
@@ -47,17 +47,17 @@ def test_ground_that_the_seed_drew_stays_when_the_sliders_stand_still() -> None:
 
 def test_sliders_leave_reward_and_ending_of_an_own_task() -> None:
     ends = {"reward": lambda *_: 2.0, "best_reward": 4.0, "ending": lambda *_: "tired"}
-    own = dataclasses.replace(STEPPING, **ends)  # type: ignore[arg-type]
+    own = replace(STEPPING, **ends)  # type: ignore[arg-type]
     result = simulate(Scenario.of(EpisodeSpec(PAPER_STEPPING, 3, own)).spec())
     assert result.termination == "tired" and result.episode_return == pytest.approx(2.0 * 0.01)
     assert result.score == pytest.approx(result.episode_return / (4.0 * 29.0))
 
 
 def test_a_push_is_simulated_as_given_and_lasts_as_its_task_says() -> None:
-    lasting = dataclasses.replace(BALANCE, draw_push=lambda config, seed: DrawnPush((40.0, 0.0, 0.0), 2.0, 0.6))
+    lasting = replace(BALANCE, draw_push=lambda config, seed: DrawnPush((40.0, 0.0, 0.0), 2.0, 0.6))
     found = Scenario.of(EpisodeSpec(LEARNED, 0, lasting, PUSHED)).spec().config
     assert push_of(BALANCE, found, 0) == DrawnPush((40.0, 0.0, 0.0), 2.0, 0.6)
-    push, config = Push((50.0, 50.0), (90.0, 90.0), (2.5, 2.5)), dataclasses.replace(PUSHED, time_limit=3.0)
+    push, config = Push((50.0, 50.0), (90.0, 90.0), (2.5, 2.5)), replace(PUSHED, time_limit=3.0)
     scenario = Scenario(PAPER_STEPPING, LEARNED, push, Terrain(), 1, config)
     trace = simulate(scenario.spec(), record_trace=True).trace
     assert trace is not None
