@@ -93,6 +93,7 @@ def test_what_a_task_and_an_engine_have_of_their_own_is_read(tmp_path: Path) -> 
         ("task: walking", "unknown task 'walking'"),
         ("episode: {randomisation: {enabled: off}}", "enabled must be true or false, not 'off'"),
         ("task: [balance]", "task must be a text, not ['balance']"),
+        ("algo: 3", "algo must be a text, not 3"),
         ("episode: 5", "episode must hold keys and values, not 5"),
         ("[1, 2]", "the file must hold keys and values"),
         ("episode: {time_limit: 1}", "time_limit must be above the 1 s of standing, not 1.0"),
