@@ -54,12 +54,13 @@ def test_settings_are_keywords() -> None:
 
 
 def test_mistakes_in_keywords_are_one_line() -> None:
-    for keywords, words in (
+    mistakes: list[tuple[dict[str, Any], str]] = [
         ({"engin": "mujoco"}, "unknown key 'engin', did you mean 'engine'?"),
         ({"push": {"newton": 1}}, "unknown key 'push.newton', did you mean 'push.newtons'?"),
         ({"task": "balanse"}, "unknown task 'balanse', did you mean 'balance'"),
         ({"render_mode": "rgb"}, r"^unknown render_mode 'rgb', did you mean 'rgb_array'\?"),
-    ):
+    ]
+    for keywords, words in mistakes:
         with pytest.raises(ConfigurationError, match=words) as caught:
             SarahEnv(**{"task": "balance", **keywords})
         assert "\n" not in str(caught.value)
@@ -215,7 +216,7 @@ def made(name: str, engine: str) -> Any:
     given: dict[str, Any] = {"engine": engine, "physics": {"rate": 100, "solver_iterations": 5}}
     if name == OPERATION:
         return gymnasium.make(name, robot=given, settle_seconds=0.5, measure_seconds=0.5).unwrapped
-    task = {} if "task" in ENVIRONMENTS[name] else {"task": "balance"}
+    task: dict[str, Any] = {} if "task" in ENVIRONMENTS[name] else {"task": "balance"}
     return gymnasium.make(name, time_limit=1.5, **given, **task).unwrapped
 
 

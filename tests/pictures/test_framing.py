@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from contextlib import closing
 from dataclasses import replace
 from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
@@ -44,7 +45,9 @@ def still(robot: RobotDescription, force: np.ndarray, drift: tuple[float, float]
     """Trace of a robot that stands still while it is pushed."""
     ticks = 4
     widths = dict.fromkeys(("acceleration", "angular_rate"), 3) | dict.fromkeys(("joints", "targets"), 6)
-    rows = {name: np.zeros((ticks, width)) for name, width in {**widths, "ankles": 4, "pressures": 4}.items()}
+    rows: dict[str, Any] = {
+        name: np.zeros((ticks, width)) for name, width in {**widths, "ankles": 4, "pressures": 4}.items()
+    }
     rows |= {name: np.zeros(ticks) for name in ("rate", "tilt", "stable_x", "score", "steps_per_second")}
     rows |= {"time": np.arange(ticks) / 10, "stance": np.ones(ticks), "push": np.tile(force, (ticks, 1))}
     rows["position"] = np.tile((*drift, robot.standing_height), (ticks, 1))

@@ -163,4 +163,4 @@ def test_impossible_ground_is_refused() -> None:
         ({"cell": 1.0}, "here 1 and 50 m, not 0.7"),
     ):
         with pytest.raises(ConfigurationError, match=message):
-            Terrain(**setting)  # type: ignore[arg-type]
+            Terrain(**setting)

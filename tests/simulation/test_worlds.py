@@ -221,4 +221,4 @@ def test_what_holds_a_world_cannot_be_copied(engine: str) -> None:
         for way in WAYS.values():
             with pytest.raises(SimulationError, match=f"^{type(holder).__name__} holds simulated worlds"):
                 way(holder)
-        holder.close()
+        holder.close()  # type: ignore[attr-defined]
