@@ -223,7 +223,7 @@ def test_it_stops_at_the_speeds_of_the_controller_and_stands() -> None:
     assert supervisor.targets == (0.0,) * 6 and supervisor.phase is Phase.STAND
 
 
-def test_it_steps_again_only_when_asked_after_a_second_of_standing() -> None:
+def test_it_steps_again_when_asked_after_a_second_of_standing() -> None:
     supervisor = supervised()
     fed(supervisor, steps(400))
     assert supervisor.tilt != 0.0
@@ -240,7 +240,7 @@ def test_it_steps_again_only_when_asked_after_a_second_of_standing() -> None:
     assert supervisor.state is State.STEPPING and any(supervisor.targets)
 
 
-def test_parameters_that_do_not_step_are_replaced_by_those_that_did() -> None:
+def test_parameters_without_a_step_are_replaced_by_those_before() -> None:
     supervisor = supervised()
     fed(supervisor, steps(700))
     supervisor.set_parameters(SteppingParameters(2.0, 2.0, 2.0, 2.0, 2.0))
@@ -285,7 +285,7 @@ def test_the_second_of_standing_begins_with_readings_in_time(late: float, begins
     assert supervisor.state is State.STEPPING
 
 
-def test_a_robot_that_stands_is_watched_and_does_not_step_while_it_lies() -> None:
+def test_who_stands_is_watched_and_does_not_step_while_it_lies() -> None:
     supervisor = supervised()
     fed(supervisor, still(150))
     supervisor.stand("tilted floor ahead")  # words of who stops it, and no fault
@@ -313,7 +313,7 @@ def test_times_that_are_none_count_as_a_period() -> None:
     assert supervisor.state is State.STANDING
 
 
-def test_parameters_that_change_all_the_time_do_not_hide_that_it_does_not_step() -> None:
+def test_parameters_that_keep_changing_hide_no_missing_step() -> None:
     supervisor = supervised()
     for tick, reading in enumerate(still(400)):
         supervisor.set_parameters(SteppingParameters(0.4 + 1e-6 * tick, *PAPER_STEPPING[1:]))
@@ -330,7 +330,7 @@ def test_a_joint_is_believed_again_when_it_follows() -> None:
     assert (lost[50], lost[190], lost[299]) == (set(), {1}, set())
 
 
-def test_a_sensor_that_is_dead_from_the_beginning_is_told_of_once() -> None:
+def test_a_sensor_dead_from_the_beginning_is_told_of_once() -> None:
     supervisor = supervised()
     dead = [stuck("angular_rate", 1)(0, seen, STANDING) for seen in still(500)[50:]]
     said = fed(supervisor, [*[None] * 50, *dead])

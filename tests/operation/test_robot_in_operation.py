@@ -163,7 +163,7 @@ def test_parameters_out_of_their_box_are_refused() -> None:
             robot.run(parameters)  # type: ignore[arg-type]
 
 
-def test_a_supervised_robot_that_has_stopped_steps_in_the_next_window() -> None:
+def test_a_supervised_robot_that_stopped_steps_in_another_window() -> None:
     robot = RobotInOperation(quick(robot={"supervisor": {"enabled": True, "stepless_seconds": 0.8}}), 0)
     never, rate = (2.0,) * 5 + (0.0,) * 4, FELT.index("steps_per_second")
     found = [robot.run(parameters).felt[rate] for parameters in (never, never, SHIPPED, SHIPPED)]

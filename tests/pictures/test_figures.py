@@ -133,7 +133,7 @@ ROBOTS: list[dict[str, float]] = [{}, SMALL, STILTS, DWARF, FEET]
 
 
 @pytest.mark.parametrize("changed", ROBOTS)
-def test_every_dimension_is_marked_and_each_arrow_is_as_long_as_it_says(changed: dict[str, float]) -> None:
+def test_every_dimension_has_a_mark_as_long_as_it_says(changed: dict[str, float]) -> None:
     dimensions = all_dimensions(changed)
     shown = [mark for panel in marks(dimensions, np.zeros(3)).values() for mark in panel]
     assert sorted(mark.name for mark in shown) == sorted([*dimensions, CENTRE_OF_MASS])
@@ -174,7 +174,7 @@ def test_links_are_seen_without_files_in_colours_of_their_groups() -> None:
 
 
 @NEEDS_PYBULLET
-def test_lifted_foot_is_seen_and_a_robot_out_of_the_picture_is_not() -> None:
+def test_a_lifted_foot_is_seen_and_a_robot_outside_is_not() -> None:
     robot = describe_robot()
     renderer, height, joints = Renderer(robot), robot.standing_height, dict.fromkeys(robot.limits, 0.0)
     standing, lifted = (

@@ -111,7 +111,7 @@ CAPTIONS = [NUMBERS, "one\ntwo\nthree", "a_task_with_a_name_" + 20 * "without_en
 
 
 @pytest.mark.parametrize("caption", CAPTIONS)
-def test_long_captions_stay_clear_of_edges_of_the_robot_and_of_the_phases(caption: str) -> None:
+def test_long_captions_stay_clear_of_edges_robot_and_phases(caption: str) -> None:
     robot = describe_robot()
     trace = still(robot, np.zeros(3))
     (with_caption,), (without,) = (frames(trace, robot, (0.0,), text) for text in (caption, ""))

@@ -54,7 +54,7 @@ def test_push_is_marked_while_it_acts_and_a_moment_longer(trace: Trace) -> None:
     assert before == long_after == 0 and during > 1000 and after > 1000
 
 
-def test_speed_stretches_the_video_and_no_frame_is_behind_the_end() -> None:
+def test_speed_stretches_the_video_and_no_frame_is_past_the_end() -> None:
     times = frame_times(2.0, 3.0, 25.0)
     assert times[0] == 2.0 and times[-1] == pytest.approx(3.0) and len(times) == 26
     assert len(frame_times(2.0, 3.0, 25.0, speed=0.5)) == 51

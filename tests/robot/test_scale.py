@@ -89,7 +89,7 @@ def test_a_robot_is_told_if_its_step_frequency_is_not_rewarded() -> None:
     assert natural_step_frequency(slow) == pytest.approx(1 / 0.3)
 
 
-def test_a_ramp_goes_by_its_largest_change_and_a_clip_ends_at_its_limit() -> None:
+def test_a_ramp_goes_by_its_largest_change_a_clip_to_its_limit() -> None:
     goals = (-1.0, -0.05, 0.05, 1.0)
     assert (
         [ramped(0.0, goal, 0.1) for goal in goals] == [clipped(goal, 0.1) for goal in goals] == [-0.1, -0.05, 0.05, 0.1]

@@ -102,7 +102,7 @@ def test_robot_words_and_pushes_are_in_the_first_view(dimensions: dict[str, floa
         assert camera._replace(distance=FIRST_CAMERA.distance) == FIRST_CAMERA
 
 
-def test_an_arrow_is_as_long_as_its_force_is_strong_up_to_its_limit() -> None:
+def test_an_arrow_is_as_long_as_its_force_up_to_its_limit() -> None:
     lengths = [float(np.ptp(arrow(np.array((newtons, 0.0, 0.0)))[:, 0])) for newtons in (50.0, 100.0, 500.0, 1000.0)]
     assert lengths[1] == pytest.approx(2 * lengths[0]) and lengths[2] == lengths[3] > lengths[1]
     assert channels("#0172B3") == (1, 0x72, 0xB3)

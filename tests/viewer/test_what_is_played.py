@@ -37,7 +37,7 @@ def test_sliders_that_stand_still_change_nothing() -> None:
     assert again.score == pytest.approx(simulate(pushed).score, abs=0.02) and again.duration == 4.0
 
 
-def test_ground_that_the_seed_drew_stays_when_the_sliders_stand_still() -> None:
+def test_ground_that_was_drawn_stays_with_still_sliders() -> None:
     terrain = Terrain((0.0, 6.0), roughness=(0.0, 0.01), cell=(0.04, 0.08), friction_right=(0.3, 0.6))
     spec = EpisodeSpec(PAPER_STEPPING, 3, config=EpisodeConfig(time_limit=2.0, terrain=terrain))
     scenario = Scenario.of(spec)
@@ -97,7 +97,7 @@ def test_playback_goes_on_by_the_clock_and_stops_at_the_end() -> None:
     playback.close()
 
 
-def test_the_newest_wish_is_simulated_and_the_one_before_it_given_up() -> None:
+def test_the_newest_wish_is_simulated_and_older_ones_given_up() -> None:
     done: Queue[EpisodeResult] = Queue()
     shares: Queue[float] = Queue()
     simulation = BackgroundSimulation(shares.put, pytest.fail)
