@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 
 from sarah import ControllerConstants
 from sarah.control.hip_law import BalanceParameters, HipLaw
+from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.robot.reading import SensorReading, Side
 
 DT = 0.01
@@ -145,6 +147,12 @@ def test_loaded_legs_do_not_follow_the_fall() -> None:
         assert low <= hips.flexion[Side.LEFT] <= high and hips.flexion[Side.RIGHT] == 0.0
 
 
+def test_an_outlier_of_gyroscope_or_joint_is_soon_forgotten() -> None:
+    hit = after(law(v3=1.0), reading(left=0.0), ticks=5)
+    after(hit, reading(left=0.0, rate_x=10.0, flexion=(0.0, 1e5)), ticks=1)
+    assert abs(after(hit, reading(left=0.0), ticks=100).fall) < 0.05
+
+
 def test_a_leg_that_gives_way_outward_tips_and_v2_does_not() -> None:
     """The right leg carries, and its foot has gone 0.2 rad to the left: 2 (0.2 - 0.15) rad. In the air it counts on."""
     tipping = after(law(v1=1.0, servo_error=1.0), reading(left=0.0, abduction=(0.0, 0.2)), ticks=100)
@@ -170,3 +178,14 @@ def test_a_stuck_position_of_a_hip_joint_moves_no_leg(stuck: float) -> None:
             still = after(law(v1=1.0), reading(0.0, 0.0, *loads, abduction=abduction), ticks=100)
             assert set(still.abductions.values()) == {0.0}
     assert abs(after(law(v3=1.0), reading(left=0.0, flexion=(0.0, stuck)), ticks=100).fall) < 0.1
+
+
+def test_pattern_generator_sends_the_hips_targets() -> None:
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), BalanceParameters(1.0, 0.0, 1.0, 0.5), DT)
+    for _ in range(101):
+        generator.tick(reading())
+    for _ in range(10):
+        generator.tick(reading(lateral=-3.0, rate_x=-0.8, left=0.0))
+    left_abduction, right_abduction, left_flexion, right_flexion, *_ = generator.targets
+    assert left_abduction == right_abduction > 0
+    assert left_flexion > right_flexion == pytest.approx(0.01)  # it falls forward, and the left foot goes there

@@ -4,8 +4,10 @@ import math
 from typing import Any
 
 import pytest
+from laboratory import need
 
-from sarah import PHYSICS, BalanceParameters, SensorReading
+from sarah import PHYSICS, BalanceParameters, ControllerConstants, EpisodeConfig, EpisodeSpec, SensorReading, simulate
+from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.episode.episode import Episode
 from sarah.episode.parameter_sets import PARAMETER_SETS
@@ -53,6 +55,38 @@ def test_no_push_that_the_robot_survives_is_taken_for_a_fall(engine: Any) -> Non
     assert survived >= 2
 
 
+@pytest.mark.parametrize("v2", [1.0, -1.0])
+def test_a_jump_of_v2_while_the_robot_steps_is_no_push(engine: Any, v2: float) -> None:
+    config = BalanceConfig(engine=engine, push=NO_PUSH, time_limit=5.0, stepping=STEPPING)
+    for seed in (2, 5):  # two moments of the gait
+        with Episode(config, seed, BALANCE) as episode:
+            episode.stand()
+            episode.start(V)
+            for _ in range(100 + 7 * seed):
+                episode.tick()
+            episode.robot.generator.set_parameters(balance=BalanceParameters(1.0, v2, 1.0, 0.0))
+            while episode.termination is None:
+                episode.tick()
+        result = episode.result()
+        assert result.survived and not episode.robot.generator.has_fallen
+        assert result.steps_per_second > 2.0 and result.shifts_by_sensors > 0.8
+
+
+def test_legs_that_spread_save_robots_that_tip_over_to_the_side() -> None:
+    need("mujoco")
+
+    def survivors(spread_gain: float) -> int:
+        survived = 0
+        for seed in range(12):
+            push = Push(125.0, (180.0 * (seed % 2),) * 2, (2.0, 3.0))
+            constants = ControllerConstants(spread_gain=spread_gain)
+            config = BalanceConfig(engine="mujoco", controller=constants, push=push, time_limit=4.0, stepping=STEPPING)
+            survived += simulate(EpisodeSpec((1.0, 0.0, 0.7, 0.0), seed, BALANCE, config)).survived
+        return survived
+
+    assert survivors(ControllerConstants().spread_gain) > survivors(0.0) + 1
+
+
 KEPT = {(0.0, 0.0, -0.02, 0.02): "time_limit", (0.05, -0.05, 0.0, 0.0): "time_limit"}
 LEFT = {(0.0, 0.0, 0.05, 0.05): "left_box"}  # walks out of its place within 12 s
 
@@ -72,3 +106,13 @@ def test_zeros_of_the_joints_may_be_as_far_off_as_the_page_says(offsets: tuple[f
         episode.robot.simulation.read = askew  # type: ignore[method-assign]
         episode.stand()
         assert episode.run(spec.parameters).termination == termination
+
+
+def test_short_time_outs_end_phases_before_the_sensors_can() -> None:
+    def stepping(**constants: float) -> Any:
+        config = EpisodeConfig(time_limit=3.0, controller=ControllerConstants(**constants))
+        return simulate(EpisodeSpec(PAPER_STEPPING, 0, config=config))
+
+    standard, hurried = stepping(), stepping(time_out_seconds=0.03)  # in 0.05 s MuJoCo's legs end most shifts
+    assert standard.shifts_by_sensors > 0.9 and standard.lifts_by_sensors > 0.9
+    assert hurried.shifts_by_sensors < 0.1 and hurried.score < standard.score

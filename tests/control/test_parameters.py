@@ -1,12 +1,17 @@
 """The table of learned parameters, from which pages, help texts and figures take what they say."""
 
+import dataclasses
 import math
+from typing import Any
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from sarah.control.parameters import BALANCE_PARAMETERS, STEPPING_PARAMETERS, Box, Parameter
+from sarah.control.constants import STANDARD_CONSTANTS
+from sarah.control.hip_law import BalanceParameters
+from sarah.control.parameters import BALANCE_PARAMETERS, PAPER_STEPPING, STEPPING_PARAMETERS, Box, Parameter
+from sarah.control.pattern_generator import Phase, PhaseChange, SteppingParameters
 from sarah.errors import ConfigurationError
 
 
@@ -47,3 +52,16 @@ def test_values_are_their_actions_and_their_shares(values: tuple[float, ...]) ->
     assert ODD.at_shares(ODD.shares(values)) == pytest.approx(values, abs=1e-12)
     rounded = Box(ODD.parameters, decimals=3).at_shares(ODD.shares(values))
     assert rounded == tuple(round(value, 3) for value in rounded) == pytest.approx(values, abs=5.1e-4)
+
+
+VALUES = (
+    *(STANDARD_CONSTANTS, STEPPING_PARAMETERS[0], SteppingParameters(*PAPER_STEPPING)),
+    *(BalanceParameters(1.0, 0.0, 0.0, 0.0), PhaseChange(Phase.LAND, by_sensors=True)),
+)
+
+
+@pytest.mark.parametrize("value", VALUES, ids=lambda value: type(value).__name__)
+def test_values_of_a_controller_do_not_change(value: Any) -> None:
+    """An episode is a function of its specification, so nothing may write to it."""
+    with pytest.raises(dataclasses.FrozenInstanceError):
+        setattr(value, dataclasses.fields(value)[0].name, 0.0)

@@ -5,6 +5,8 @@ import math
 
 import pytest
 from hand_made import DT, LOADED, OVER_RIGHT, ROCKING_BACK, UNLOADED, reading, rocking, started, stood
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from sarah import BalanceParameters, ControllerConstants
 from sarah.control.parameters import PAPER_STEPPING
@@ -123,6 +125,16 @@ def test_lift_and_land_time_out_after_p4_and_p5() -> None:
     assert tick_until_change(lifted((0.0, 0.0, 0.0, 0.0, 0.0)), ROCKING_BACK)[1] == 4
     faster = PatternGenerator(SteppingParameters(0.0, 0.0, 0.0, 0.0, 0.0), dt=0.001)
     assert tick_until_change(stood(faster), OVER_RIGHT)[1] == 40
+
+
+@settings(max_examples=20)
+@given(parameters=st.tuples(*[st.floats(0.0, 2.0)] * 5), steady=st.tuples(st.floats(-20, 20), st.floats(-5, 5)))
+def test_no_phase_outlasts_its_time_out(parameters: tuple[float, ...], steady: tuple[float, float]) -> None:
+    generator = started(parameters)
+    for _ in range(6):
+        phase = generator.phase
+        _, ticks = tick_until_change(generator, reading(*steady))
+        assert ticks * DT <= generator.time_out(phase) + DT
 
 
 def test_legs_push_lift_and_straighten_at_the_leg_speed() -> None:

@@ -34,6 +34,14 @@ SHORT_BALANCE = BalanceConfig(time_limit=2.4, physics=COARSE_PHYSICS)
 PAPER_ACTION = np.array(PAPER_STEPPING, dtype=np.float32) - 1.0
 
 
+def test_environments_do_not_share_their_spaces() -> None:
+    first, second, again = (SarahEnv(config=SHORT).action_space for _ in range(3))
+    first.seed(0), second.seed(0)
+    first.sample()
+    again.seed(0)
+    assert (second.sample() == again.sample()).all()
+
+
 def test_a_task_of_your_own_is_an_environment() -> None:
     task = replace(STEPPING, name="mine", episode=SHORT, reward=lambda tick, config: tick.height)
     env = gymnasium.make("SarahEpisode-v0", task=task)

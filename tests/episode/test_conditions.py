@@ -85,6 +85,12 @@ def step_on(engine: Engine, terrain: Terrain, seed: int = 3, seconds: float = 5.
     return simulate(EpisodeSpec(TRAINED_STEPPING, seed, config=config))
 
 
+def test_robot_steps_on_a_gentle_slope_and_slides_on_a_steep_one(engine: Engine) -> None:
+    gentle, steep = (step_on(engine, terrain, 0) for terrain in (Terrain((3.0, 3.0), (90.0, 90.0)), UPHILL_IN_FRONT))
+    assert gentle.survived and gentle.score > 0.7
+    assert steep.termination == "left_box" and steep.final_position[1] < -0.25
+
+
 def test_robot_steps_on_bumps_and_slower_than_on_the_plane(engine: Engine) -> None:
     plane, bumps = (step_on(engine, Terrain(roughness=(height, height))) for height in (0.0, 0.01))
     assert bumps.survived and 1.5 < bumps.steps_per_second < plane.steps_per_second
@@ -192,6 +198,18 @@ def test_a_task_of_a_file_names_its_own(tmp_path: Path, disturbances: str, expec
     given = disturbances_of(spec(5, task))
     assert given == expected and all(type(number) is float for number in given or ())
     try_task(task, SHORT)
+
+
+def test_hard_push_throws_the_robot_over_and_a_soft_one_does_not() -> None:
+    def pushed(newtons: float) -> EpisodeResult:
+        push = Push(newtons=(newtons, newtons), degrees=(90.0, 90.0), at_seconds=(2.0, 2.0))
+        config = BalanceConfig(push=push, time_limit=4.0, randomisation=Randomisation(enabled=False))
+        return simulate(EpisodeSpec((1.0, 0.0, 1.0, 0.0), 0, "balance", config))
+
+    assert pushed(40.0).survived
+    thrown = pushed(300.0)
+    assert thrown.termination == "left_box" and thrown.final_position[1] > 0.2
+    assert 2.15 < thrown.duration < 3.0
 
 
 def test_push_is_the_only_difference_between_forces() -> None:

@@ -13,10 +13,13 @@ from laboratory import CONTROL_DT, NoPhysics
 from sarah import PHYSICS, EpisodeConfig, EpisodeResult, EpisodeSpec, Physics, Push, Randomisation, Terrain
 from sarah.control.constants import ControllerConstants
 from sarah.control.parameters import PAPER_STEPPING
+from sarah.control.pattern_generator import PhaseChange
 from sarah.envs.sarah_env import observation_from
 from sarah.episode.ending import TERMINATIONS
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.reward import highest_return, reward_rate
+from sarah.episode.robot_settings import conditions_of
+from sarah.episode.running_robot import RunningRobot
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.episode.workers import begin_episode
 from sarah.ranges import ranges_of, types_of
@@ -58,6 +61,14 @@ def test_episode_runs_on_any_simulator() -> None:
     assert result.final_position == (0.0, 0.0, 0.84)
 
 
+def test_an_episode_takes_given_conditions_not_those_drawn() -> None:
+    drawn = conditions_of(SHORT, 0)
+    biased = replace(drawn, sensors=replace(drawn.sensors, angular_rate_bias=(5.0, 0.0, 0.0)))
+    episodes = {bias: Episode(SHORT, 0, build=NoPhysics, conditions=given) for bias, given in ((0, None), (5, biased))}
+    rates = {bias: episode.stand().angular_rate[0] for bias, episode in episodes.items()}
+    assert rates[5] - rates[0] == pytest.approx(5.0 - drawn.sensors.angular_rate_bias[0])
+
+
 class Pushed(NoPhysics):
     """A simulator in which a push does nothing but to be noted."""
 
@@ -77,6 +88,35 @@ def test_push_lasts_as_long_as_it_says() -> None:
     assert episode.robot.simulation.forces == [(80.0, 0.0, 0.0)] * 15  # type: ignore[attr-defined]
     assert trace is not None
     assert trace.time[(trace.push == (80.0, 0.0, 0.0)).all(axis=1)] == pytest.approx(np.arange(2.0, 2.145, CONTROL_DT))
+
+
+class Diary:
+    """Observer that writes down time, number of commands so far, and push."""
+
+    def __init__(self) -> None:
+        self.entries: list[tuple[float, int, Vector | None]] = []
+
+    def sensed(self, robot: RunningRobot) -> None:
+        self.decided(robot, None, None)
+
+    def decided(self, robot: RunningRobot, change: PhaseChange | None, force: Vector | None) -> None:
+        simulation: Any = robot.simulation
+        self.entries.append((simulation.time, len(simulation.targets), force))
+
+
+def test_an_observer_sees_a_tick_before_anything_moves() -> None:
+    diary: Any
+    diary, robot = Diary(), RunningRobot(EpisodeConfig(), 0, build=Pushed)
+    robot.observers = (diary,)
+    robot.tick()
+    robot.tick((50.0, 0.0, 0.0))
+    times, commands, forces = zip(*diary.entries, strict=True)
+    assert times == pytest.approx((0.0, 0.0, 0.01, 0.01))
+    assert commands == (0, 1, 1, 2)
+    assert forces == (None, None, None, (50.0, 0.0, 0.0))
+    robot.termination = "fell"
+    robot.tick()
+    assert robot.simulation.time == pytest.approx(0.02) and len(diary.entries) == 4
 
 
 def test_a_with_block_closes_the_world_after_an_error_too() -> None:

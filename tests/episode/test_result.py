@@ -4,10 +4,11 @@ import random
 from dataclasses import replace
 
 import pytest
-from laboratory import RESULT
+from laboratory import CONTROL_DT, RESULT
 
-from sarah import EpisodeConfig, EpisodeSpec
+from sarah import PHYSICS, BalanceConfig, EpisodeConfig, EpisodeSpec, Push
 from sarah.control.parameters import PAPER_STEPPING
+from sarah.episode.episode import Episode
 from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE, STATISTICS, Evaluation, evaluate
 from sarah.episode.result import METRICS
 from sarah.episode.workers import Workers
@@ -58,6 +59,28 @@ def test_a_gait_is_one_by_sensors_that_lifts_its_feet(changes: dict[str, float],
 SHORT = EpisodeConfig(time_limit=4.0)
 
 
+def shaken_by(amplitude: float) -> Evaluation:
+    """The same episode, with flexions that a controller shakes at half the control rate."""
+    with Episode(SHORT, 0) as episode:
+        episode.stand()
+        simulation = episode.robot.simulation
+        send = simulation.set_targets
+
+        def shaken(targets: tuple[float, ...]) -> None:
+            flexion = amplitude if round(simulation.time / CONTROL_DT) % 2 else -amplitude
+            send((*targets[:2], flexion, flexion, *targets[4:]))
+
+        simulation.set_targets = shaken  # type: ignore[method-assign]
+        return Evaluation((episode.run(PAPER_STEPPING),))
+
+
+def test_chattering_hips_show_as_vibration() -> None:
+    calm, chattering = shaken_by(0.0), shaken_by(0.02)
+    assert chattering.chatters(calm) and not calm.chatters(calm)
+    assert chattering.mean("actuator_power") > calm.mean("actuator_power")
+    assert chattering.statistic("peak_hip_rate", "max") > 10 * calm.statistic("peak_hip_rate", "max")
+
+
 @pytest.mark.slow
 def test_papers_parameters_step_on_20_seeds(workers: Workers) -> None:
     evaluation = evaluate("stepping", PAPER_STEPPING, EpisodeConfig(), range(20), workers)
@@ -75,3 +98,22 @@ def test_no_clock_among_random_parameters_pays(workers: Workers) -> None:
     shares = [(min(result.shifts_by_sensors, result.lifts_by_sensors), result.score) for result in results]
     clocks = [score for share, score in shares if share < SMALLEST_SENSOR_SHARE]
     assert len(clocks) > 10 and max(clocks) < 0.6
+
+
+@pytest.mark.slow
+def test_v1_saves_the_robot_from_pushes_to_the_side(workers: Workers) -> None:
+    """Forty pushes of 100 N from the sides: at V = 0 about 6 in 10 survive, with V1 = 1 nearly all.
+
+    At the reference physics; at the standard one a few more fall.
+    """
+    push = Push(newtons=(100.0, 100.0), at_seconds=(2.0, 4.0))
+    survived = {}
+    for v1 in (0.0, 1.0):
+        specs = []
+        for seed in range(40):
+            side = (0.0, 0.0) if seed % 2 else (180.0, 180.0)
+            pushed = replace(push, degrees=side)
+            config = BalanceConfig(physics=PHYSICS["reference"], push=pushed, time_limit=8.0)
+            specs.append(EpisodeSpec((v1, 0.0, 0.0, 0.0), seed, "balance", config))
+        survived[v1] = sum(result.survived for result in workers.simulate_all(specs))
+    assert survived[1.0] >= 38 and survived[1.0] >= survived[0.0] + 8

@@ -174,6 +174,18 @@ def test_links_are_seen_without_files_in_colours_of_their_groups() -> None:
 
 
 @NEEDS_PYBULLET
+def test_camera_stands_still_when_the_robot_drifts() -> None:
+    robot, middles = describe_robot(), []
+    renderer, joints = Renderer(robot), dict.fromkeys(robot.limits, 0.0)
+    for x in (0.0, 0.1):
+        picture = renderer.draw((x, 0.0, robot.standing_height), UPRIGHT, joints, *SIZE)
+        not_floor = np.abs(picture.astype(int) - floor(*SIZE, STANDARD_CAMERA)).sum(axis=-1) > 60
+        middles.append(np.nonzero(not_floor)[1].mean())
+    moved = np.diff(View(*SIZE, STANDARD_CAMERA).pixels(np.array([(0.0, 0.0, 0.5), (0.1, 0.0, 0.5)]))[:, 0])[0]
+    assert middles[1] - middles[0] == pytest.approx(moved, rel=0.1)
+
+
+@NEEDS_PYBULLET
 def test_a_lifted_foot_is_seen_and_a_robot_outside_is_not() -> None:
     robot = describe_robot()
     renderer, height, joints = Renderer(robot), robot.standing_height, dict.fromkeys(robot.limits, 0.0)
@@ -197,3 +209,9 @@ def test_gravity_points_down_in_the_picture_of_a_slope(uphill: float) -> None:
     (x, y), (x_below, y_below) = View(*SIZE, camera).pixels(points)
     assert (x, y) == pytest.approx((SIZE[0] / 2, SIZE[1] / 2))
     assert x_below == pytest.approx(x) and y_below > y + 5.0
+
+
+def test_floor_of_a_slope_rises_uphill() -> None:
+    camera = Camera(yaw=180.0, ground=draw_ground(Terrain((15.0, 15.0), (0.0, 0.0)), 0))
+    (x_right, y_right), (x_left, y_left) = View(*SIZE, camera).pixels(np.array(((0.5, 0.0, 0.0), (-0.5, 0.0, 0.0))))
+    assert x_right < x_left and y_right < y_left

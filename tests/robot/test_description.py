@@ -149,6 +149,16 @@ def test_two_points_have_the_inertia_of_a_dumbbell() -> None:
     assert np.diag(pair.inertia) == pytest.approx((0.0, 2.0, 2.0))
 
 
+def test_the_default_robot_stands_over_its_feet() -> None:
+    robot = describe_robot()
+    links = links_of(robot)
+    whole = together(links.values())
+    assert {name: link.mass for name, link in links.items()} == robot.masses
+    assert whole.mass == pytest.approx(30.0) and whole.centre[0] == pytest.approx(0.0)
+    soles = np.array(robot.standing_soles)
+    assert (soles.min(axis=0)[:2] < whole.centre[:2]).all() and (whole.centre[:2] < soles.max(axis=0)[:2]).all()
+
+
 @pytest.mark.parametrize("dimensions", [{"thigh_length": 0.2, "forefoot_contact": 0.2, "hip_offset": 0.2}])
 def test_an_engine_finds_the_same(dimensions: dict[str, float]) -> None:
     need("mujoco")

@@ -22,7 +22,7 @@ from sarah.runs.agent_settings import (
     TD3Settings,
     settings_of,
 )
-from sarah.runs.config import TrainingConfig
+from sarah.runs.config import ALGORITHMS, TrainingConfig
 from sarah.runs.config_files import changed_alike, first_difference, read_config, write_config
 from sarah.simulation.engines import default_engine
 
@@ -152,6 +152,11 @@ def test_settings_from_python_are_checked_as_those_of_a_file() -> None:
             make()
     config = training(episodes=np.int64(30), agent=naf(learning_rate=np.float32(0.5)))
     assert type(config.episodes) is int and type(config.agent.learning_rate) is float
+
+
+def test_every_algorithm_has_settings() -> None:
+    for algo in ALGORITHMS:
+        assert TrainingConfig(algo=algo).agent == settings_of(algo)()
 
 
 def test_a_preset_is_a_source_of_defaults() -> None:

@@ -8,17 +8,20 @@ import subprocess
 import sys
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import Any, get_args, get_type_hints
 
 import pytest
 from terminal import run
 
-from sarah import EpisodeConfig, Physics
+from sarah import EpisodeConfig, Physics, Push, Randomisation
 from sarah.episode.workers import Workers
+from sarah.errors import ConfigurationError, DescriptionError
 from sarah.files import read_lines, read_text, replace_text
 from sarah.reports.judging import Evaluations
 from sarah.reports.race import race
 from sarah.reports.race_entry import entries_of
+from sarah.robot.description import describe_robot
+from sarah.runs.agent_settings import AGENT_SETTINGS
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import is_installed
@@ -107,6 +110,19 @@ def test_no_file_of_a_run_is_unpickled(spared: set[str], finished: bool, folder:
     assert {*PLANTED, "model.zip", "episodes.csv"} < names and not (tmp_path / "sprung").exists()
 
 
+def test_yaml_makes_no_objects(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for text in (
+        "!!python/object/apply:pathlib.Path.touch [!!python/object/apply:pathlib.Path ['sprung']]",
+        "algo: !!python/object/apply:os.system ['touch sprung']",
+        "episode: {dimensions: {thigh_length: !!python/object/new:os.system ['touch sprung']}}",
+    ):
+        (tmp_path / "config.yaml").write_text(text)
+        with pytest.raises(ConfigurationError):
+            RunFolder.open(tmp_path, unfinished=True).config()
+    assert not (tmp_path / "sprung").exists()
+
+
 @pytest.mark.skipif(sys.version_info < (3, 11), reason="Python 3.10 always looks in the working folder")
 def test_nothing_in_the_working_folder_is_imported(folder: Path, tmp_path: Path) -> None:
     """Not by workers either, which are new processes."""
@@ -117,6 +133,27 @@ def test_nothing_in_the_working_folder_is_imported(folder: Path, tmp_path: Path)
     process = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=environment, timeout=120)
     assert process.returncode == 0, process.stderr
     assert not (tmp_path / "sprung").exists()
+
+
+def test_dimensions_are_numbers_and_nothing_else(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for value in ("${open('sprung', 'w')}", "../../etc/passwd", float("nan"), "0.33'/><link name='x'"):
+        with pytest.raises(DescriptionError, match=r"'thigh_length' must be a number between"):
+            describe_robot({"thigh_length": value})  # type: ignore[dict-item]
+        with pytest.raises(DescriptionError, match="unknown robot dimension"):
+            describe_robot({f"x:={value}": 1.0})
+    assert not list(tmp_path.iterdir())
+
+
+def test_no_setting_is_a_path() -> None:
+    """So none leads out of the run folder. A device is one of a few names, and no file's task is loaded by its name."""
+    texts = set()
+    for config_type in (TrainingConfig, EpisodeConfig, Physics, Randomisation, Push, *AGENT_SETTINGS.values()):
+        for name, kind in get_type_hints(config_type).items():
+            assert kind is not Path
+            if kind is str or (str in get_args(kind)[:1] and not hasattr(kind, "__origin__")):
+                texts.add(name)
+    assert texts == {"algo", "device"}
 
 
 def laughs(path: Path) -> None:

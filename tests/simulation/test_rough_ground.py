@@ -43,6 +43,25 @@ def test_heights_distances_and_highest_places_of_a_hill_by_hand() -> None:
     assert HILL.highest(-0.08, -0.02, 0.05, 0.07) == pytest.approx(0.005)  # and a diagonal
 
 
+@settings(max_examples=30)
+@given(
+    edges=st.tuples(*[st.floats(-0.6, 0.6)] * 4),
+    inside=st.lists(st.tuples(st.floats(0.0, 1.0), st.floats(0.0, 1.0)), min_size=20, max_size=20),
+    cell=st.sampled_from([0.02, 0.033, 0.05, 0.1]),
+    seed=st.integers(0, 9),
+)
+def test_nothing_in_a_rectangle_is_higher_than_its_highest_place(
+    edges: tuple[float, ...], inside: list[tuple[float, float]], cell: float, seed: int
+) -> None:
+    ground = draw_ground(Terrain(roughness=(0.05, 0.05), cell=(cell, cell)), seed)
+    (left, right), (back, front) = sorted(edges[:2]), sorted(edges[2:])
+    highest = ground.highest(left, right, back, front)
+    for share_x, share_y in inside:
+        x, y = left + share_x * (right - left), back + share_y * (front - back)
+        assert ground.height(x, y) <= highest + 1e-9
+    assert highest <= np.max(ground.heights)
+
+
 def test_plates_begin_above_high_bumps() -> None:
     robot, ground = describe_robot(), draw_ground(Terrain(roughness=(0.05, 0.05)), 0)
     lift = ground.lift(robot)

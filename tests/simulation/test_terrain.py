@@ -26,6 +26,19 @@ def on(terrain: Terrain) -> Conditions:
     return Conditions(friction=0.9, ground=draw_ground(terrain, 0))
 
 
+@pytest.mark.parametrize(("uphill", "x", "y"), [(0.0, 1.0, 0.0), (90.0, 0.0, 1.0)])
+def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(
+    build: BuildSimulation, uphill: float, x: float, y: float
+) -> None:
+    simulation, readings = build(on(slope(5.0, uphill))), []
+    advance(simulation, SECOND)
+    for _ in range(SECOND):
+        simulation.advance()
+        readings.append(simulation.read().acceleration)
+    g_sin, g_cos = GRAVITY * math.sin(math.radians(5.0)), GRAVITY * math.cos(math.radians(5.0))
+    assert np.mean(readings, axis=0) == pytest.approx((x * g_sin, y * g_sin, g_cos), abs=0.01)
+
+
 def test_a_falling_robot_has_gravitys_pull_and_feels_nothing(lab: Laboratory, build: BuildSimulation) -> None:
     conditions = on(slope(10.0, 30.0))
     simulation = build(conditions)
