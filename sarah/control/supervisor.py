@@ -19,17 +19,14 @@ from enum import Enum
 from typing import NamedTuple
 
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
+from sarah.control.hearing import Hearing
 from sarah.control.hip_law import LOCKED_HIPS, NO_LIMITS, BalanceParameters
 from sarah.control.pattern_generator import PatternGenerator, Phase, PhaseChange, SteppingParameters
 from sarah.control.supervisor_settings import STANDARD_SUPERVISOR, SupervisorSettings
-from sarah.control.watches import NOTHING, Watches
-from sarah.robot.filters import ramped
-from sarah.robot.reading import GRAVITY, SensorReading, Side, Targets
+from sarah.control.targets import STANDING_TARGETS, towards
+from sarah.control.watches import Watches
+from sarah.robot.reading import SensorReading, Side, Targets
 
-UNHEARD = NOTHING._replace(acceleration=(math.nan, math.nan, GRAVITY))
-"""What the controller is given without a new reading: a stuck vertical acceleration could look like a fall."""
-STANDING_TARGETS: Targets = (0.0,) * 6
-"""Targets of a standing robot."""
 PUT_BACK = "the parameters before are back"
 """Beginning of the reason for which parameters were replaced by the last ones that worked."""
 ASKED_TO_STAND = "asked to stand"
@@ -97,8 +94,8 @@ class Supervisor:
         self._proven: tuple[SteppingParameters, BalanceParameters] | None = None
         self.state_change = None
         self.targets = STANDING_TARGETS
-        self._before: tuple[float, ...] = ()
-        self._unheard, self._told, self._stopped_for = math.inf, "", ""
+        self._hearing = Hearing(settings.stale_seconds)
+        self._told, self._stopped_for = "", ""
         self._begin()
 
     def _begin(self) -> None:
@@ -152,17 +149,13 @@ class Supervisor:
         """
         self.state_change = None
         passed = self._dt if seconds is None or not 0.0 <= seconds < math.inf else seconds
-        if reading is None or not age <= self._settings.stale_seconds:
-            reading = NOTHING
-        is_new = self._is_new(reading)
-        self._unheard = 0.0 if is_new else self._unheard + passed
-        heard = reading if is_new else UNHEARD
+        found, heard = self._hearing.hear(reading, age, passed)
         if self.state in (State.STANDING, State.STEPPING) and self._is_to_step:
-            if self._unheard > self._settings.stale_seconds:
+            if self._hearing.is_stale:
                 self._wait(passed)
                 return None
-            return self._control(reading, heard, seconds, passed)
-        self._stand_still(reading, heard, passed)
+            return self._control(found, heard, seconds, passed)
+        self._stand_still(found, heard, passed)
         return None
 
     def _control(
@@ -196,7 +189,8 @@ class Supervisor:
             self._is_paused = self._is_catching_up = True
             self._enter(self.state, "no new reading: the targets go to zero until there is one")
         self.targets = towards(STANDING_TARGETS, self.targets, self.constants, self._dt)
-        if self.state is State.STEPPING and (wrong := self._watches.nothing_heard(self._unheard, seconds)):
+        unheard = self._hearing.unheard_seconds
+        if self.state is State.STEPPING and (wrong := self._watches.nothing_heard(unheard, seconds)):
             self._react(wrong)
 
     def _follow(self, goals: Targets) -> None:
@@ -214,12 +208,6 @@ class Supervisor:
             return heard
         joints = [self.targets[index] if index in lost else joint for index, joint in enumerate(heard.joints)]
         return heard._replace(joints=tuple(joints))  # type: ignore[arg-type]  # as long
-
-    def _is_new(self, reading: SensorReading) -> bool:
-        """Whether an inertial signal is another one than before; noise never repeats."""
-        signals, before = (*reading.acceleration, *reading.angular_rate), self._before
-        self._before = signals
-        return signals != before and (signals[2] == signals[2] or signals[4] == signals[4])  # not all NaN
 
     def _stand_still(self, reading: SensorReading, heard: SensorReading, seconds: float) -> None:
         """Stop if it steps, and stand; a robot that has fallen keeps its targets."""
@@ -330,22 +318,6 @@ class Supervisor:
     def rate(self) -> float:
         """Angular rate about y towards the stance leg, in rad/s."""
         return self.generator.rate
-
-
-def towards(goals: Targets, targets: Targets, constants: ControllerConstants, seconds: float) -> Targets:
-    """Targets that are nearer to others, by as much as the controller moves them.
-
-    :param goals: joint targets to move to, in rad and m
-    :param targets: present joint targets, in rad and m
-    :param constants: constants of the controller
-    :param seconds: time in which they move, in s
-    """
-    hip, leg = constants.hip_speed * seconds, constants.leg_speed * seconds
-    (a, b, c, d, e, f), (to_a, to_b, to_c, to_d, to_e, to_f) = targets, goals
-    return (
-        ramped(a, to_a, hip), ramped(b, to_b, hip), ramped(c, to_c, hip), ramped(d, to_d, hip),
-        ramped(e, to_e, leg), ramped(f, to_f, leg),
-    )  # fmt: skip
 
 
 Controller = PatternGenerator | Supervisor

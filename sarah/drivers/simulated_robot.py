@@ -9,7 +9,7 @@ from dataclasses import dataclass
 
 from sarah.control.hip_law import LOCKED_HIPS
 from sarah.control.pattern_generator import STAND_SECONDS, PhaseChange
-from sarah.control.supervisor import STANDING_TARGETS, towards
+from sarah.control.targets import STANDING_TARGETS, towards
 from sarah.drivers.driver import Driver, TimedReading
 from sarah.drivers.faults import FAULTS, Fault
 from sarah.drivers.loop import ControlLoop, Lockstep, LoopObserver, LoopTick, Pacing, controller_for

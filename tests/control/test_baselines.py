@@ -29,12 +29,12 @@ def test_while_standing_baselines_are_the_means_so_far() -> None:
 
 @pytest.mark.parametrize("bad", [math.nan, -1e300])
 def test_a_mean_is_that_of_the_finite_readings_of_its_signal(bad: float) -> None:
-    """Rate about x has come twice, as 1 and as 5; in between the value before stands in for it."""
+    """In between the value before stands in for one that is not."""
     baselines = Baselines(DT)
-    for measured in (bad, 1.0, bad, bad, 5.0):
-        corrected = baselines.corrected(reading(2.0, measured, 4.0), True)
-    assert (baselines.acceleration_x, baselines.rate_x, baselines.rate_y) == pytest.approx((2.0, 3.0, 4.0))
-    assert signals(corrected) == pytest.approx((0.0, 2.0, 0.0))
+    for measured in ((bad, 1.0, 2.0), (1.0, bad, bad), (bad, 5.0, bad), (bad, bad, 6.0), (5.0, bad, bad)):
+        corrected = baselines.corrected(reading(*measured), True)
+    assert (baselines.acceleration_x, baselines.rate_x, baselines.rate_y) == pytest.approx((3.0, 3.0, 4.0))
+    assert signals(corrected) == pytest.approx((2.0, 2.0, 2.0))
 
 
 def test_stepping_baselines_follow_within_eight_seconds() -> None:

@@ -1,29 +1,38 @@
-"""A pattern generator in operation: what keeps a robot whole, new parameters, and ticks that are late or missed."""
+"""A pattern generator in operation: what keeps a robot whole, new parameters, late or missed ticks, any readings."""
 
 import math
+from contextlib import suppress
 from typing import Any
 
 import pytest
 from hand_made import BALANCE, DT, OVER_RIGHT, UNLOADED, reading, rocking, started, stood
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from sarah.control.baselines import Baselines
+from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
 from sarah.control.hip_law import BalanceParameters, HipLaw
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.control.pattern_generator import PatternGenerator, Phase, PhaseChange, SteppingParameters
+from sarah.control.pattern_generator import LONGEST_GAP, PatternGenerator, Phase, PhaseChange, SteppingParameters
 from sarah.errors import ConfigurationError
 from sarah.robot.reading import SensorReading
 
+P = SteppingParameters(*PAPER_STEPPING)
 WRONG = ((0.1, 0.3), (-0.3, -0.1), (-0.1, math.nan))
 NARROW = ((-0.01, 0.3), (-0.02, 0.3), (-0.005, 0.005), (-0.8, 0.8), (-0.004, 0.02), (-0.05, 0.12))
+
+
+def stepping(balance: BalanceParameters = BALANCE, dt: float = DT, **options: Any) -> PatternGenerator:
+    return stood(PatternGenerator(P, balance, dt, **options))
 
 
 def test_targets_stay_within_limits_whose_joints_are_named() -> None:
     """The robot is pushed to the right, so abduction is negative; V4 flexes by 0.02 rad, and the left leg swings."""
     v = BalanceParameters(2.0, 0.0, 0.0, 1.0)
     given = [*NARROW]
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT, limits=given))
+    generator = stepping(v, limits=given)
     given.clear()
-    free = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT))
+    free = stepping(v)
     assert generator.limited_joints == ("left_hip_flexion", "left_leg_length")
     named = set()
     for _ in range(400):
@@ -37,35 +46,29 @@ def test_targets_stay_within_limits_whose_joints_are_named() -> None:
     assert generator.targets[:2] == (-0.01, -0.01)  # one abduction for both
 
 
-@pytest.mark.parametrize(
-    ("arguments", "words"),
-    [
-        *(
-            ({"limits": limits}, "limits must be 6 ranges around zero, not")
-            for limits in (NARROW[:5], *(((low, high), *NARROW[1:]) for low, high in WRONG), None)
-        ),
-        *(({"dt": dt}, f"dt must be between 0.0001 and 0.1 s, not {dt!r}") for dt in (0.0, 0.11, math.nan, None)),
-    ],
-)
-def test_limits_and_periods_that_no_robot_has_are_refused(arguments: dict[str, Any], words: str) -> None:
-    with pytest.raises(ConfigurationError, match=words):
-        PatternGenerator(SteppingParameters(*PAPER_STEPPING), **arguments)
+@pytest.mark.parametrize("limits", [NARROW[:5], *(((low, high), *NARROW[1:]) for low, high in WRONG), None])
+def test_limits_that_no_robot_has_are_refused(limits: Any) -> None:
+    with pytest.raises(ConfigurationError, match="limits must be 6 ranges around zero, not"):
+        PatternGenerator(P, limits=limits)
+
+
+@pytest.mark.parametrize("dt", [0.0, 0.11, math.nan, math.inf, None])
+def test_periods_that_no_robot_has_are_refused(dt: Any) -> None:
+    with pytest.raises(ConfigurationError, match=f"dt must be between 0.0001 and 0.1 s, not {dt!r}"):
+        PatternGenerator(P, dt=dt)
+    for make in (lambda: HipLaw(BALANCE, dt), lambda: Baselines(dt)):
+        if dt in (0.0, math.inf):
+            with pytest.raises(ConfigurationError, match=f"dt must be finite and above zero, not {dt}"):
+                make()
 
 
 def test_flexion_that_a_limit_keeps_from_v4_is_no_fall() -> None:
     limits = ((-1.0, 1.0), (-1.0, 1.0), (-0.005, 0.005), (-0.005, 0.005), (-1.0, 1.0), (-1.0, 1.0))
     v = BalanceParameters(0.0, 0.0, 1.0, 2.0)
-    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT, limits)
+    generator = PatternGenerator(P, v, DT, limits)
     for _ in range(400):
         generator.tick(reading()._replace(joints=generator.targets))
     assert generator.targets[2:4] == (0.005, 0.005) and abs(generator.hips.fall) < 1e-9
-
-
-@pytest.mark.parametrize("dt", [0.0, math.inf])
-def test_filters_refuse_periods_that_are_not_above_zero(dt: float) -> None:
-    for make in (lambda: HipLaw(BALANCE, dt), lambda: Baselines(dt)):
-        with pytest.raises(ConfigurationError, match=f"dt must be finite and above zero, not {dt}"):
-            make()
 
 
 SIGNALS = {"acceleration": 3, "angular_rate": 3, "pressures": 4, "joints": 6}
@@ -78,7 +81,7 @@ def test_a_signal_that_drops_out_keeps_its_value(field: str, index: int) -> None
         values[index] = value
         return whole._replace(**{field: tuple(values)})
 
-    lost, stuck = (stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT)) for _ in range(2))
+    lost, stuck = (stepping() for _ in range(2))
     for generator in (lost, stuck):
         generator.tick(rocking(5))
     last = getattr(rocking(5), field)[index]
@@ -98,7 +101,7 @@ def lying(x: float = 0.0, y: float = 0.0, z: float = 0.0) -> SensorReading:
 
 @pytest.mark.parametrize("fallen", [lying(x=9.81), lying(z=-9.81), lying(y=9.0, z=4.0)])
 def test_who_lies_has_fallen_within_a_second_and_is_still(fallen: SensorReading) -> None:
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    generator = stepping()
     for tick in range(100):
         generator.tick(rocking(tick))
     assert not generator.has_fallen
@@ -112,23 +115,13 @@ def test_who_lies_has_fallen_within_a_second_and_is_still(fallen: SensorReading)
     assert generator.has_fallen
 
 
-def test_a_blow_or_a_long_gap_before_it_is_no_fall() -> None:
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
-    for _ in range(10):
-        generator.tick(lying())
-    for tick in range(100):
-        generator.tick(rocking(tick))
-    generator.tick(lying(z=-1e5), 60.0)
-    generator.tick(reading())
-    assert not generator.has_fallen
-
-
 @pytest.mark.parametrize("dt", [0.001, 0.02])
 @pytest.mark.parametrize("up", [0.0, 40.0, -1e5])
-def test_a_single_reading_after_a_second_without_any_is_no_fall(up: float, dt: float) -> None:
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, dt))
-    for _ in range(2):
-        generator.tick(lying(z=up), 1.0)
+def test_a_tenth_of_a_second_or_a_reading_after_a_gap_is_no_fall(up: float, dt: float) -> None:
+    generator = stepping(dt=dt)
+    for lies, seconds, ticks in ((lying(), dt, round(0.1 / dt)), (lying(z=up), 1.0, 1), (lying(z=up), 60.0, 1)):
+        for _ in range(ticks):
+            generator.tick(lies, seconds)
         for _ in range(round(1.0 / dt)):
             generator.tick(reading())
     assert not generator.has_fallen
@@ -146,7 +139,7 @@ def test_who_lies_is_recognised_though_most_ticks_are_missed(every: int, longest
 def test_new_p1_to_p5_hold_from_the_next_tick_on() -> None:
     """A tilt of nearly 1.25 is not above P2 = 1.3, and above P2 = 1.1; the V that were given before stay."""
     v = BalanceParameters(0.0, 0.0, 0.5, 0.0)
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT))
+    generator = stepping(v)
     for _ in range(50):
         assert generator.tick(reading(lateral=-1.25, rate=0.3)) is None
     generator.set_parameters(SteppingParameters(0.4, 1.1, 0.1, 1.0, 1.0))
@@ -156,7 +149,7 @@ def test_new_p1_to_p5_hold_from_the_next_tick_on() -> None:
 
 def test_new_v1_to_v4_come_at_the_speed_of_the_ramp_and_arrive() -> None:
     """4 per second are 0.04 in a tick: V1 goes by 1 in 25 ticks, and V4 by 1.5 in 38. P1 to P5 stay."""
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    generator = stepping()
     goal = BalanceParameters(0.0, 0.0, 0.5, -1.5)
     generator.set_parameters(balance=goal)
     assert generator.hips.parameters == BALANCE
@@ -165,15 +158,15 @@ def test_new_v1_to_v4_come_at_the_speed_of_the_ramp_and_arrive() -> None:
         v = generator.hips.parameters
         assert pytest.approx(max(0.0, 1.0 - 0.04 * tick)) == v.V1 and (v.V2, v.V3) == (0.0, 0.5)
         assert pytest.approx(max(-1.5, -0.04 * tick)) == v.V4
-    assert v == goal and generator.parameters == SteppingParameters(*PAPER_STEPPING)
+    assert v == goal and generator.parameters == P
 
 
 def test_while_the_robot_stands_new_parameters_hold_at_once() -> None:
     generator = PatternGenerator(SteppingParameters(0.0, 0.0, 0.0, 0.0, 0.0), dt=DT)
     generator.tick(reading())
-    generator.set_parameters(SteppingParameters(*PAPER_STEPPING), BALANCE)
-    assert generator.parameters == SteppingParameters(*PAPER_STEPPING) and generator.hips.parameters == BALANCE
-    given = PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT)
+    generator.set_parameters(P, BALANCE)
+    assert generator.parameters == P and generator.hips.parameters == BALANCE
+    given = PatternGenerator(P, BALANCE, DT)
     given.tick(reading())
     for tick in range(300):
         assert generator.tick(rocking(tick)) == given.tick(rocking(tick)) and generator.targets == given.targets
@@ -189,17 +182,17 @@ def test_while_the_robot_stands_new_parameters_hold_at_once() -> None:
     ],
 )
 def test_parameters_that_cannot_be_are_refused_and_none_changes(refused: Any, words: str) -> None:
-    generator = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, DT))
+    generator = stepping()
     for take in (generator.set_parameters, PatternGenerator):
         with pytest.raises(ConfigurationError, match=f"parameters must be {words}, not"):
             take(*refused)
     generator.tick(reading())
-    assert generator.parameters == SteppingParameters(*PAPER_STEPPING) and generator.hips.parameters == BALANCE
+    assert generator.parameters == P and generator.hips.parameters == BALANCE
 
 
 def phase_ends(dt: float, every: int, told: bool) -> list[tuple[float, PhaseChange]]:
     """When phases end in 8 s of rocking after standing, by the ticks that take place: one in ``every``."""
-    generator, ends = stood(PatternGenerator(SteppingParameters(*PAPER_STEPPING), BALANCE, dt)), []
+    generator, ends = stepping(dt=dt), []
     for tick in range(every, round(8.0 / dt) + 1, every):
         change = generator.tick(rocking(tick, dt), every * dt if told else None)
         if change is not None:
@@ -217,7 +210,7 @@ def test_who_is_told_of_missed_ticks_steps_as_at_half_the_rate() -> None:
 
 @pytest.mark.parametrize("seconds", [0.02, math.inf])
 def test_it_stands_for_a_second_of_readings_however_far_apart(seconds: float) -> None:
-    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
+    generator = PatternGenerator(P, dt=DT)
     generator.tick(reading(), DT)
     for _ in range(100):
         assert generator.phase is Phase.STAND and generator.targets == (0.0,) * 6
@@ -226,24 +219,10 @@ def test_it_stands_for_a_second_of_readings_however_far_apart(seconds: float) ->
 
 
 def test_a_reading_after_a_long_gap_weighs_no_more_in_a_mean() -> None:
-    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=DT)
+    generator = PatternGenerator(P, dt=DT)
     generator.tick(reading())
     generator.tick(reading(lateral=1.0), 1.0)
     assert generator.stable_x == pytest.approx(0.5, rel=1e-3)
-
-
-@pytest.mark.parametrize("field", ["acceleration", "angular_rate"])
-def test_signals_that_come_late_have_the_baselines_of_what_came(field: str) -> None:
-    """The first half of the readings is lost, and the other half is constant: the hips find no push in it."""
-    v = BalanceParameters(1.0, 0.0, 1.0, 0.0)
-    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), v, DT)
-    constant = reading(lateral=0.7, rate=0.05, left=UNLOADED)
-    nothing: dict[str, Any] = {field: (math.nan,) * 3}
-    lost = constant._replace(**nothing)
-    for tick in range(200):
-        generator.tick(lost if tick < 50 else constant)
-    assert generator.targets[:4] == pytest.approx((0.0,) * 4, abs=1e-9)
-    assert generator.tilt == pytest.approx(0.0) and generator.rate == pytest.approx(0.0)
 
 
 def test_late_and_early_ticks_count_by_their_times() -> None:
@@ -264,3 +243,43 @@ def test_a_gap_counts_up_to_a_second_and_no_time_as_a_tick(seconds: float | None
         punctual.tick(OVER_RIGHT)
     assert late.stable_x == pytest.approx(punctual.stable_x)
     assert late.rate == pytest.approx(punctual.rate, rel=0.01)
+
+
+NEVER_FALLEN = ControllerConstants(least_upright=-20.0, largest_blow=10.0)
+"""No reading counts as a fall, so the generator goes on whatever it reads."""
+SIGNAL = st.floats() | st.floats(-30.0, 30.0) | st.floats(0.0, 500.0)
+READING = st.builds(SensorReading, *(st.tuples(*[SIGNAL] * count) for count in (3, 3, 4, 6)))
+SECONDS = st.none() | st.sampled_from([0.01, 0.02, 0.013, 0.0, 0.004, -1.0, math.nan, math.inf]) | st.floats()
+CHANGE = (
+    st.none() | st.builds(SteppingParameters, *[st.floats()] * 5) | st.builds(BalanceParameters, *[st.floats()] * 4)
+)
+RANGE = st.tuples(st.floats(-0.5, 0.0), st.floats(0.0, 0.5))
+
+
+@settings(max_examples=20, derandomize=True)
+@given(
+    limits=st.tuples(*[RANGE] * 6),
+    ticks=st.lists(st.tuples(READING, SECONDS, CHANGE, st.integers(1, 120)), max_size=12),
+    constants=st.sampled_from([STANDARD_CONSTANTS, NEVER_FALLEN]),
+)
+def test_targets_are_slow_and_within_limits_whatever_comes(
+    limits: tuple[tuple[float, float], ...],
+    ticks: list[tuple[SensorReading, float | None, SteppingParameters | BalanceParameters | None, int]],
+    constants: ControllerConstants,
+) -> None:
+    generator = PatternGenerator(P, dt=0.01, limits=limits, constants=constants)
+    speeds = [constants.hip_speed] * 4 + [constants.leg_speed] * 2
+    before = generator.targets
+    for given_reading, seconds, change, repetitions in [*ticks, (reading(), None, None, 150), *ticks]:
+        with suppress(ValueError):  # not finite
+            if isinstance(change, BalanceParameters):
+                generator.set_parameters(balance=change)
+            else:
+                generator.set_parameters(change)
+        counts = seconds is not None and seconds >= 0.0
+        longest = 0.01 + (min(seconds, LONGEST_GAP) if counts and seconds is not None else 0.0)
+        for _ in range(repetitions):
+            generator.tick(given_reading, seconds)
+            for now, then, (low, high), speed in zip(generator.targets, before, limits, speeds, strict=True):
+                assert low <= now <= high and abs(now - then) <= speed * longest * (1 + 1e-9)
+            before = generator.targets

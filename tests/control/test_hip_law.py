@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from sarah.control.constants import ControllerConstants
+from sarah import ControllerConstants
 from sarah.control.hip_law import BalanceParameters, HipLaw
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
@@ -44,12 +44,42 @@ def law(v1: float = 0.0, v2: float = 0.0, v3: float = 0.0, v4: float = 0.0, serv
     return HipLaw(BalanceParameters(v1, v2, v3, v4), DT, ControllerConstants(largest_servo_error=servo_error))
 
 
-def test_abduction_settles_where_the_law_says() -> None:
-    settled = after(law(v1=1.5, v2=0.4), reading(lateral=2.0), ticks=300)
-    assert settled.stable_x == pytest.approx(2.0, rel=1e-3)
-    assert settled.abduction == pytest.approx(-0.05 * (1.5 * 2.0 + 0.4), rel=1e-3)
-    # The hips' own low-pass takes three tenths of a second
-    assert after(law(), reading(lateral=2.0), ticks=30).stable_x == pytest.approx(2.0 * (1.0 - math.exp(-1.0)))
+DEAD_BAND, TIPS = 0.03, 0.2
+"""A fall below which the flexion does not react, in rad; and a rate about y with which a robot leans by 0.25 rad in the
+end: by 0.2 rad that it has turned, and by 0.2 / 4 rad that it soon will."""
+LEFT, RIGHT = Side.LEFT, Side.RIGHT
+STEADY: dict[str, tuple[dict[str, float], dict[str, Any], dict[str, Any]]] = {
+    "abduction is V1's and V2's": ({"v1": 1.5, "v2": 0.4}, {"lateral": 2.0}, {"abduction": -0.05 * (1.5 * 2.0 + 0.4)}),
+    "a torso has pitched": ({}, {"rate_x": 0.4}, {"pitch": 0.4}),
+    "the right leg carries": ({}, {"left": 40.0, "right": 250.0, "flexion": (-0.2, 0.1)}, {"fall": 0.1 - DEAD_BAND}),
+    "the left leg carries": ({}, {"left": 250.0, "right": 40.0, "flexion": (0.1, -0.2)}, {"fall": 0.1 - DEAD_BAND}),
+    "pitch, its rate, and no V4": (
+        {"v4": 1.0},
+        {"rate_x": 0.2, "flexion": (0.02, 0.02)},
+        {"fall": 0.25 - DEAD_BAND},
+    ),
+    "V4 flexes both alike": ({"v4": 1.5}, {}, {"flexion": {LEFT: 0.03, RIGHT: 0.03}}),
+    "locked hips": ({}, {"lateral": 8.0, "rate_x": 3.0}, {"abduction": 0.0, "flexion": {LEFT: 0.0, RIGHT: 0.0}}),
+    **{
+        f"tips to the {side}, V1 = {v1}": ({"v1": v1}, {f"{side.other}": 0.0, "rate_y": side.value * TIPS}, spread)
+        for v1 in (0.25, 0.5)
+        for side in Side
+        for spread in [{"abductions": {LEFT: 0.2 * v1, RIGHT: -0.2 * v1}, "abduction": 0.0, "sway": 0.0}]
+    },
+    **{
+        f"does not tip over, V1 = {v1}, {rate} rad/s": ({"v1": v1}, {"left": 0.0, "rate_y": rate}, {"spread": 0.0})
+        for v1, rate in ((0.0, TIPS), (-1.0, TIPS), (1.0, -TIPS), (1.0, 0.11))
+    },
+}
+"""Parameters, a reading that stays, and what comes of it."""
+
+
+@pytest.mark.parametrize("case", STEADY)
+def test_a_steady_reading_moves_the_hips_where_the_law_says(case: str) -> None:
+    parameters, steady, expected = STEADY[case]
+    settled = after(law(**parameters), reading(**steady), ticks=2000)
+    for name, value in expected.items():
+        assert getattr(settled, name) == pytest.approx(value), name
 
 
 @pytest.mark.parametrize(("limits", "largest", "expected"), [(0.05, 0.3, -0.05), (0.5, 0.04, -0.04), (0.5, 0.3, -0.1)])
@@ -60,10 +90,10 @@ def test_a_constant_abduction_is_no_sway_whatever_limits_it(limits: float, large
     assert constant.abduction == pytest.approx(expected) and constant.sway == pytest.approx(0.0)
 
 
-def test_pitch_is_a_steady_rate_times_its_time_constant() -> None:
-    locked = BalanceParameters(0.0, 0.0, 0.0, 0.0)
-    for leaky, seconds in ((law(), 1.0), (HipLaw(locked, DT, ControllerConstants(lean_time_constant=0.5)), 0.5)):
-        assert after(leaky, reading(rate_x=0.4), ticks=2000).pitch == pytest.approx(0.4 * seconds)
+def test_the_filters_have_their_time_constants() -> None:
+    assert after(law(), reading(lateral=2.0), ticks=30).stable_x == pytest.approx(2.0 * (1.0 - math.exp(-1.0)))
+    leaky = HipLaw(BalanceParameters(0.0, 0.0, 0.0, 0.0), DT, ControllerConstants(lean_time_constant=0.5))
+    assert after(leaky, reading(rate_x=0.4), ticks=2000).pitch == pytest.approx(0.4 * 0.5)
 
 
 def test_abduction_goes_to_its_target_at_6_rad_per_second() -> None:
@@ -76,7 +106,6 @@ def test_abduction_goes_to_its_target_at_6_rad_per_second() -> None:
 
 
 def test_hips_keep_to_their_limits() -> None:
-    """Those that are given, or three tenths of a radian."""
     narrow = ControllerConstants(largest_hip_angle=0.02, hip_speed=1.0)
     hips, before = HipLaw(BalanceParameters(2.0, 2.0, 2.0, -2.0), DT, narrow), 0.0
     for _ in range(50):
@@ -86,25 +115,6 @@ def test_hips_keep_to_their_limits() -> None:
     assert hips.abduction == -0.02 and hips.flexion[Side.LEFT] == -0.02
     turned = after(law(v1=2.0, v3=2.0), reading(lateral=15.0, rate_x=5.0, left=0.0), ticks=100)
     assert turned.abduction == turned.flexion[Side.LEFT] == -0.3
-
-
-LEANS, DEAD_BAND = 0.1, 0.03
-
-
-@pytest.mark.parametrize(("loads", "flexion"), [((40.0, 250.0), (-0.2, LEANS)), ((250.0, 40.0), (LEANS, -0.2))])
-def test_fall_is_the_carrying_legs_lean_beyond_the_dead_band(loads: Any, flexion: Any) -> None:
-    assert after(law(), reading(left=loads[0], right=loads[1], flexion=flexion), ticks=100).fall == pytest.approx(
-        LEANS - DEAD_BAND
-    )
-
-
-def test_fall_counts_pitch_and_rate_and_not_v4() -> None:
-    """A torso that turns at a steady 0.2 rad/s has pitched by 0.2 rad in the end, and leans on by 0.2 / 4 rad.
-
-    The hips have moved by V4's 0.02 rad, which leans nobody.
-    """
-    turning = after(law(v4=1.0), reading(rate_x=0.2, flexion=(0.02, 0.02)), ticks=2000)
-    assert turning.fall == pytest.approx(0.2 + 0.2 / 4.0 - DEAD_BAND)
 
 
 def test_fall_of_one_tick_by_hand() -> None:
@@ -121,12 +131,6 @@ def test_fall_of_one_tick_by_hand() -> None:
     assert moved.flexion == {Side.LEFT: pytest.approx(-0.06), Side.RIGHT: 0.0}  # 6 rad/s, towards -0.6 x 0.1061
 
 
-@settings(max_examples=20)
-@given(rate=st.floats(-0.012, 0.012), v3=st.floats(-2.0, 2.0))
-def test_small_leans_are_no_fall(rate: float, v3: float) -> None:
-    assert set(after(law(v3=v3), reading(rate_x=rate, left=0.0), ticks=300).flexion.values()) == {0.0}
-
-
 @settings(max_examples=30)
 @given(lean=st.floats(-0.2, 0.2), v3=st.floats(-1.0, 1.0))
 def test_foot_in_the_air_steps_to_the_side_of_the_fall(lean: float, v3: float) -> None:
@@ -137,38 +141,16 @@ def test_foot_in_the_air_steps_to_the_side_of_the_fall(lean: float, v3: float) -
 
 
 def test_loaded_legs_do_not_follow_the_fall() -> None:
-    falling = reading(left=31.0, right=250.0, flexion=(0.0, 0.2))
-    assert set(after(law(v3=1.0, servo_error=1.0), falling, ticks=50).flexion.values()) == {0.0}
-    in_the_air = after(law(v3=1.0, servo_error=1.0), reading(left=29.0, right=250.0, flexion=(0.0, 0.2)), ticks=50)
-    assert in_the_air.flexion[Side.LEFT] < -0.05
-    assert set(after(in_the_air, falling, ticks=10).flexion.values()) == {0.0}  # it has landed
+    hips = law(v3=1.0, servo_error=1.0)
+    for left, low, high in ((31.0, 0.0, 0.0), (29.0, -1.0, -0.05), (31.0, 0.0, 0.0)):  # it lifts its foot, and lands
+        after(hips, reading(left=left, right=250.0, flexion=(0.0, 0.2)), ticks=50)
+        assert low <= hips.flexion[Side.LEFT] <= high and hips.flexion[Side.RIGHT] == 0.0
 
 
 def test_an_outlier_of_gyroscope_or_joint_is_soon_forgotten() -> None:
     hit = after(law(v3=1.0), reading(left=0.0), ticks=5)
     after(hit, reading(left=0.0, rate_x=10.0, flexion=(0.0, 1e5)), ticks=1)
     assert abs(after(hit, reading(left=0.0), ticks=100).fall) < 0.05
-
-
-TIPS = 0.2
-"""Rate about y in rad/s at which the torso has turned by 0.2 rad in the end, and leans on by 0.2 / 4 rad."""
-
-
-@pytest.mark.parametrize("v1", [0.25, 0.5])
-@pytest.mark.parametrize(("side", "loads"), [(Side.RIGHT, (0.0, 300.0)), (Side.LEFT, (300.0, 0.0))])
-def test_a_robot_that_tips_over_its_outer_edge_spreads_its_legs(side: Side, loads: Any, v1: float) -> None:
-    """Both legs outward, by 2 V1 (0.25 - 0.15) rad; it tips to the right at a positive rate."""
-    tipping = reading(left=loads[0], right=loads[1], rate_y=side.value * TIPS)
-    spread = after(law(v1=v1), tipping, ticks=2000)
-    assert spread.abductions == {Side.LEFT: pytest.approx(0.2 * v1), Side.RIGHT: pytest.approx(-0.2 * v1)}
-    assert spread.abduction == spread.sway == 0.0
-
-
-@pytest.mark.parametrize(("v1", "rate"), [(0.0, TIPS), (-1.0, TIPS), (1.0, -TIPS), (1.0, 0.11)])
-def test_who_does_not_tip_over_does_not_spread(v1: float, rate: float) -> None:
-    """Nor who has locked hips; back over the foot, and as far as steps lean, it does not tip over."""
-    still = after(law(v1=v1), reading(left=0.0, rate_y=rate), ticks=2000)
-    assert set(still.abductions.values()) == {0.0}
 
 
 def test_a_leg_that_gives_way_outward_tips_and_v2_does_not() -> None:
@@ -196,13 +178,6 @@ def test_a_stuck_position_of_a_hip_joint_moves_no_leg(stuck: float) -> None:
             still = after(law(v1=1.0), reading(0.0, 0.0, *loads, abduction=abduction), ticks=100)
             assert set(still.abductions.values()) == {0.0}
     assert abs(after(law(v3=1.0), reading(left=0.0, flexion=(0.0, stuck)), ticks=100).fall) < 0.1
-
-
-def test_v4_flexes_both_legs_alike() -> None:
-    flexed = after(law(v4=1.5), reading(), ticks=50)
-    assert flexed.flexion == {Side.LEFT: pytest.approx(0.03), Side.RIGHT: pytest.approx(0.03)}
-    locked = after(law(), reading(lateral=8.0, rate_x=3.0), ticks=50)
-    assert locked.abduction == 0.0 and set(locked.flexion.values()) == {0.0}
 
 
 def test_pattern_generator_sends_the_hips_targets() -> None:

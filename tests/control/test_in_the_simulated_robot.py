@@ -6,20 +6,15 @@ from typing import Any
 import pytest
 from laboratory import need
 
-from sarah.control.constants import ControllerConstants
-from sarah.control.hip_law import BalanceParameters
+from sarah import PHYSICS, BalanceParameters, ControllerConstants, EpisodeConfig, EpisodeSpec, SensorReading, simulate
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
-from sarah.episode.episode import Episode, simulate
+from sarah.episode.episode import Episode
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import NO_PUSH, Push
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
 from sarah.robot.description import ACTUATED_JOINTS, describe_robot
-from sarah.robot.reading import SensorReading
 from sarah.simulation.build import simulator_of
-from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import NOMINAL
 
 STEPPING = (0.41, 0.52, 0.62, 1.17, 1.37)
@@ -55,8 +50,7 @@ def test_no_push_that_the_robot_survives_is_taken_for_a_fall(engine: Any) -> Non
         config = BalanceConfig(engine=engine, push=Push((100.0, 125.0)), time_limit=5.0, stepping=STEPPING)
         with Episode(config, seed, BALANCE) as episode:
             episode.stand()
-            episode.run(V)
-        survived += episode.termination == "time_limit"
+            survived += episode.run(V).survived
         assert not episode.robot.generator.has_fallen or episode.termination != "time_limit"
     assert survived >= 2
 

@@ -8,13 +8,11 @@ import numpy as np
 import pytest
 from laboratory import COARSE_PHYSICS, RESULT, NoPhysics
 
+from sarah import STEPPING, EpisodeConfig, simulate
 from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.envs.sarah_env import parameters_from
-from sarah.episode.episode import simulate
-from sarah.episode.settings import EpisodeConfig
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.task_answers import disturbances_of
-from sarah.episode.tasks import STEPPING
 from sarah.episode.workers import Job, Outcome, Workers, begin_episode
 from sarah.errors import ConfigurationError, LearningError
 from sarah.training.replay import LateRankReplayBuffer
@@ -39,7 +37,6 @@ def played(slots: int, episodes: int = 4, seed: int = 1) -> tuple[list[np.ndarra
 
 
 def test_outcomes_come_in_order_after_the_slots_are_full() -> None:
-    """And slots change no episode."""
     seen = []
     for slots in (1, 3):
         observations, rewards, infos = played(slots)
@@ -71,10 +68,9 @@ def test_what_cannot_be_asked_is_refused() -> None:
     assert set(env.step(ACTIONS[:1])[3][0]) & {"spec", "disturbances"} == {"spec"}  # its task names none
     with pytest.raises(ConfigurationError, match="call reset before step"):
         env.step(ACTIONS[:1])
-    with pytest.raises(NotImplementedError):
-        env.set_attr("config", SHORT)
-    with pytest.raises(NotImplementedError):
-        env.env_method("render")
+    for refused in (lambda: env.set_attr("config", SHORT), lambda: env.env_method("render")):
+        with pytest.raises(NotImplementedError):
+            refused()
 
 
 def test_a_task_an_episode_and_one_for_each_that_stands_at_first() -> None:
@@ -100,12 +96,11 @@ def test_a_task_an_episode_and_one_for_each_that_stands_at_first() -> None:
 
 def test_seed_decides_and_a_second_reset_goes_on() -> None:
     def seeds_of_two_resets(seed: int) -> list[int]:
-        env = EpisodeVecEnv("stepping", SHORT, 2, 1, Workers())
+        env, seeds = EpisodeVecEnv("stepping", SHORT, 2, 1, Workers()), []
         env.seed(seed)
-        seeds = []
         for _ in range(2):
             env.reset()
-            seeds += [env.step(ACTIONS[step][None])[3][0]["spec"].seed for step in range(2)]
+            seeds += [env.step(ACTIONS[:1])[3][0]["spec"].seed for _ in range(2)]
         return seeds
 
     first = seeds_of_two_resets(1)

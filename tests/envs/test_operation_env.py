@@ -22,15 +22,11 @@ KICKED: dict[str, Any] = {"push": {"newtons": 400.0, "duration": 0.3}}
 
 
 def test_gymnasium_knows_it_by_name() -> None:
-    """Changes are objects or mappings."""
     changes = [{"minute": 1.0, "settings": {"payload": 3.0}}]
-    env = gymnasium.make("SarahOperation-v0", minutes=3.0, robot={"payload": 2.0}, changes=changes)
-    assert isinstance(env.unwrapped, SarahOperationEnv)
-    assert env.unwrapped.config.minutes == 3.0 and env.unwrapped.config.robot.payload == 2.0
-    assert env.unwrapped.config.changes == (Change(1.0, {"payload": 3.0}),)
-    assert (
-        SarahOperationEnv(env.unwrapped.config, changes=[Change(1.0, {"payload": 3.0})]).config == env.unwrapped.config
-    )
+    env: Any = gymnasium.make("SarahOperation-v0", minutes=3.0, robot={"payload": 2.0}, changes=changes)
+    config = env.unwrapped.config
+    assert (config.minutes, config.robot.payload, config.changes) == (3.0, 2.0, (Change(1.0, {"payload": 3.0}),))
+    assert SarahOperationEnv(config, changes=[Change(1.0, {"payload": 3.0})]).config == config
     assert env.action_space.shape == (9,) and env.observation_space.shape == (len(FELT) + 9,)
 
 
@@ -79,17 +75,14 @@ def test_a_fall_terminates_and_the_same_robot_goes_on() -> None:
 
 
 def test_settings_of_another_kind_are_refused() -> None:
-    for make, words in (
-        (lambda: SarahOperationEnv(cast(Any, EpisodeConfig())), r"^config must be an OperationConfig, not .*$"),
-        (lambda: SarahOperationEnv(render_mode="rgb_array"), r"^unknown render_mode 'rgb_array' \(allowed: None\)$"),
-        (
-            lambda: SarahOperationEnv(robot={"time_limit": 3.0}),
-            "time_limit has no effect in an operation: leave it out",
-        ),
-        (lambda: SarahOperationEnv(changes=["1: payload=3"]), "must hold minute and settings, not '1: payload=3'"),
+    for settings, words in (
+        ({"config": EpisodeConfig()}, r"^config must be an OperationConfig, not .*$"),
+        ({"render_mode": "rgb_array"}, r"^unknown render_mode 'rgb_array' \(allowed: None\)$"),
+        ({"robot": {"time_limit": 3.0}}, "time_limit has no effect in an operation: leave it out"),
+        ({"changes": ["1: payload=3"]}, "must hold minute and settings, not '1: payload=3'"),
     ):
         with pytest.raises(ConfigurationError, match=words):
-            make()
+            SarahOperationEnv(**cast(Any, settings))
 
 
 @pytest.mark.parametrize(("algorithm", "gamma"), [(NAF, 0.9), (TD3, 0.0)])

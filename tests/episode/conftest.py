@@ -7,10 +7,8 @@ import dask
 import distributed  # noqa: F401  # its settings are there before a test changes one, and stay when that ends
 import pytest
 
+from sarah import EpisodeResult, EpisodeSpec, simulate
 from sarah.control.parameters import PAPER_STEPPING
-from sarah.episode.episode import simulate
-from sarah.episode.result import EpisodeResult
-from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 
 SOMEBODYS = {
@@ -24,7 +22,6 @@ SOMEBODYS = {
 
 @pytest.fixture(scope="session")
 def paper_episode() -> EpisodeResult:
-    """30 s with the paper's parameters."""
     return simulate(EpisodeSpec(PAPER_STEPPING, seed=0), record_trace=True)
 
 

@@ -15,11 +15,9 @@ import distributed
 import psutil
 import pytest
 
+from sarah import EpisodeConfig, EpisodeSpec, simulate
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode import cluster as cluster_module
-from sarah.episode.episode import simulate
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers
 from sarah.errors import DescriptionError, WorkersError
 from sarah.robot.description import describe_robot

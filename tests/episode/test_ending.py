@@ -1,25 +1,22 @@
 """How an episode ends, also where an engine returns no numbers any more: as diverged, with a finite return."""
 
-import dataclasses
 import math
 from contextlib import nullcontext
+from dataclasses import replace
 from typing import Any
 
 import pytest
 from laboratory import COARSE_PHYSICS, RESULT, NoPhysics
 
+from sarah import PHYSICS, EpisodeConfig, Evaluation, Tick
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, Phase
 from sarah.envs.sarah_env import observation_from
 from sarah.episode.ending import TERMINATIONS, ending_words, paper_ending
 from sarah.episode.episode import Episode
-from sarah.episode.evaluation import Evaluation
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.tick import Tick
 from sarah.errors import SimulationError
 from sarah.robot.reading import SensorReading, Side, Vector
 from sarah.robot.scale import Scale
-from sarah.simulation.physics import PHYSICS
 from sarah.simulation.simulator import TorsoState
 
 START = (0.5, -0.75, 1.0)
@@ -43,9 +40,8 @@ def ending(
 def test_criteria_of_the_box_it_ends_25_cm_from_the_start(axis: int, sign: float) -> None:
     """The numbers are multiples of 1/16 m, and exact."""
     for moved, expected in ((0.1875, None), (0.25, None), (0.26, "left_box")):
-        position = list(START)
-        position[axis] += sign * moved
-        assert ending((position[0], position[1], position[2])) == expected
+        x, y, z = (place + sign * moved * (index == axis) for index, place in enumerate(START))
+        assert ending((x, y, z)) == expected
 
 
 @pytest.mark.parametrize(("slope", "forward", "backward"), [(0.0, 45.0, -45.0), (20.0, 25.0, -65.0)])
@@ -121,4 +117,4 @@ def test_who_diverges_while_standing_leaves_nothing_to_show(seconds: float, monk
 def test_results_that_are_no_numbers_are_named() -> None:
     for name, value in (("vibration", math.nan), ("final_position", (0.0, math.inf, 0.8))):
         with pytest.raises(SimulationError, match=f"{name} of an episode must be finite"):
-            dataclasses.replace(RESULT, **dict[str, Any]({name: value}))
+            replace(RESULT, **dict[str, Any]({name: value}))

@@ -19,7 +19,6 @@ PRINTED = RewardSettings(reward_form="printed")
 
 
 def swinging(height: float) -> Any:
-    """A robot whose left foot swings, so high."""
     generator = SimpleNamespace(phase=Phase.LIFT, swing=Side.LEFT)
     return SimpleNamespace(generator=generator, simulation=SimpleNamespace(sole_height={Side.LEFT: height}.get))
 
@@ -108,9 +107,9 @@ def sine(hertz: float, amplitude: float, seconds: float = 10.0) -> np.ndarray:
     return amplitude * np.sin(2 * np.pi * hertz * time)
 
 
-def moving(*motion: tuple[float, ...]) -> Any:
-    """A robot whose actuators have these speeds and efforts."""
-    truth = SimpleNamespace(acceleration=(0.0, 0.0, 9.81))
+def moving(*motion: tuple[float, ...], up: float = 9.81) -> Any:
+    """A robot whose actuators have these speeds and efforts, and whose torso is accelerated upward."""
+    truth = SimpleNamespace(acceleration=(0.0, 0.0, up))
     return SimpleNamespace(truth=truth, simulation=SimpleNamespace(actuator_motion=lambda: motion))
 
 
@@ -143,3 +142,6 @@ def test_actuators_work_and_peaks() -> None:
     motion = record.metrics()
     assert motion.actuator_power == pytest.approx((5.0 + 8.0 + 30.0) / 2)
     assert motion.peak_hip_rate == 2.0 and motion.peak_leg_speed == 0.3
+    for tick in range(RATE):
+        record.sensed(moving((0.0,) * 6, (0.0,) * 6, up=9.81 + 4.0 * (-1) ** tick))
+    assert record.metrics().vibration == pytest.approx(16.0, rel=0.05)

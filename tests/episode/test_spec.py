@@ -4,37 +4,55 @@ import json
 import math
 import subprocess
 import sys
+from collections.abc import Callable
 from dataclasses import asdict, replace
-from typing import Any
+from functools import partial
+from typing import Any, cast
 
 import numpy as np
 import pytest
-from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET
+from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, RESULT
 
+from sarah import BALANCE, PHYSICS, STEPPING, BalanceConfig, EpisodeConfig, EpisodeSpec, Physics, Randomisation, Terrain
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.accuracy import physics_warning
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
+from sarah.episode.evaluation import Evaluation, evaluate
+from sarah.episode.workers import Workers
 from sarah.errors import ConfigurationError
 from sarah.robot.dimensions import default_dimensions
 from sarah.simulation.engines import Engine
-from sarah.simulation.physics import PHYSICS, Physics
-from sarah.simulation.randomisation import Randomisation
-from sarah.simulation.terrain import Terrain
+
+EVALUATED: Any = partial(evaluate, "stepping", PAPER_STEPPING, EpisodeConfig())
+SPECIFIED, BALANCED, WORKERS = (cast(Any, kind) for kind in (EpisodeSpec, BalanceConfig, Workers))
+MISTAKES: list[tuple[str, Callable[[], object]]] = [
+    ("unknown task 'steping', did you mean 'stepping'", lambda: SPECIFIED(PAPER_STEPPING, 0, task="steping")),
+    *(
+        ("parameter P4 must be between 0 and 2, not", partial(SPECIFIED, (1.0, 1.0, 1.0, value, 1.0), 0))
+        for value in (math.nan, math.inf, 2.1, -0.1, "1", True)
+    ),
+    *(("seed must be a whole number from 0", partial(SPECIFIED, PAPER_STEPPING, seed)) for seed in (-1, 1.5, True)),
+    ("dimensions must be a Mapping, not 3", lambda: BALANCED(dimensions=3)),
+    (r"stepping must be 5 numbers \(P1 to P5\), not 3", lambda: BALANCED(stepping=3)),
+    ("seeds must not be empty: an evaluation needs an episode", lambda: EVALUATED([])),
+    (r"seeds must be several whole numbers, such as range\(10\), not 3", lambda: EVALUATED(3)),
+    (r"workers must be an executor, as in .*, not 4", lambda: EVALUATED([1], 4)),
+    (r"unknown metric 'scor', did you mean 'score'\?", lambda: Evaluation((RESULT,)).mean("scor")),
+    (r"unknown statistic 'medain', did you mean", lambda: Evaluation((RESULT,)).statistic("score", "medain")),
+    ("workers must be between 0 and 256, not -1", lambda: WORKERS(-1)),
+    (r"workers must be a whole number, not 1\.5$", lambda: WORKERS(1.5)),
+    ("workers start on this machine, .*: give one of the two", lambda: WORKERS(2, "tcp://127.0.0.1:1")),
+    *(
+        ("workers start in a with statement", partial(workers.submit, simulate, 5))
+        for workers in (Workers(2), Workers(scheduler="tcp://127.0.0.1:1"))
+    ),
+]
 
 
-@pytest.mark.parametrize("value", [math.nan, math.inf, 2.1, -0.1, "1", True])
-def test_spec_refuses_what_cannot_be(value: object) -> None:
-    with pytest.raises(ConfigurationError, match="unknown task 'steping', did you mean 'stepping'"):
-        EpisodeSpec(PAPER_STEPPING, 0, task="steping")
-    with pytest.raises(ConfigurationError, match=r"parameter P4 must be between 0 and 2, not"):
-        EpisodeSpec((1.0, 1.0, 1.0, value, 1.0), 0)  # type: ignore[arg-type]
-    assert STEPPING.box.checked((0, 2, 1, 1, 1)) == (0.0, 2.0, 1.0, 1.0, 1.0)
-    for seed in (-1, 1.5, True):  # they would not repeat
-        with pytest.raises(ConfigurationError, match="seed must be a whole number from 0"):
-            EpisodeSpec(PAPER_STEPPING, seed)  # type: ignore[arg-type]
+@pytest.mark.parametrize(("words", "mistake"), MISTAKES)
+def test_what_cannot_be_is_refused(words: str, mistake: Callable[[], object]) -> None:
+    with pytest.raises(ConfigurationError, match=f"^{words}"):
+        mistake()
 
 
 def test_a_spec_does_not_follow_what_it_was_made_of() -> None:
@@ -42,21 +60,6 @@ def test_a_spec_does_not_follow_what_it_was_made_of() -> None:
     spec = EpisodeSpec(PAPER_STEPPING, np.int64(3), config=EpisodeConfig(dimensions=dimensions))  # type: ignore[arg-type]
     dimensions["hinge_height"] = 0.05
     assert spec.config.dimensions == {"hinge_height": 0.04} and type(spec.seed) is int
-
-
-@pytest.mark.parametrize(
-    ("field", "value", "expected"),
-    [
-        ("payload", -1.0, "payload must be between 0 and 100 kg"),
-        ("payload", 101.0, "payload must be between 0 and 100 kg"),
-        ("push", 100, "push must be a Push, not 100"),
-        ("dimensions", 3, "dimensions must be a Mapping, not 3"),
-        ("stepping", 3, r"stepping must be 5 numbers \(P1 to P5\), not 3"),
-    ],
-)
-def test_settings_that_cannot_be_are_named(field: str, value: object, expected: str) -> None:
-    with pytest.raises(ConfigurationError, match=expected):
-        BalanceConfig(**{field: value})  # type: ignore[arg-type]
 
 
 SHORT = EpisodeConfig(time_limit=3.0)
@@ -75,7 +78,6 @@ def test_what_was_simulated_before_or_meanwhile_changes_nothing(engine: Engine) 
 
 
 def test_a_fresh_process_gives_the_same_result(engine: Engine) -> None:
-    """Whatever it simulated before."""
     program = (
         "import dataclasses, json, sarah\n"
         f"config = sarah.BalanceConfig(engine='{engine}', time_limit=3.0)\n"

@@ -1,7 +1,6 @@
 """Who simulates changes nothing: the same in this process, on workers that die, and on a cluster."""
 
 import contextlib
-import json
 import os
 import shutil
 import signal
@@ -16,19 +15,16 @@ from types import SimpleNamespace
 from typing import Any
 
 import distributed
-import psutil
 import pytest
 from laboratory import COARSE_PHYSICS
 
+from sarah import EpisodeConfig, EpisodeSpec, SensorReading
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode import cluster as cluster_module
 from sarah.episode import workers as workers_module
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
 from sarah.episode.workers import Workers, begin_episode, finish_episode
-from sarah.errors import ConfigurationError, WorkersError
-from sarah.robot.reading import SensorReading
+from sarah.errors import WorkersError
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.train import train
@@ -47,7 +43,6 @@ def train_in(folder: Path, workers: Workers | None) -> RunFolder:
 
 
 def learned_bytes(run_folder: RunFolder) -> dict[str, bytes]:
-    """What must not depend on who simulated."""
     weights = zipfile.ZipFile(run_folder.model_path).read("policy.pth")
     texts = {name: (run_folder.path / name).read_bytes() for name in ("episodes.csv", "parameters.json")}
     return {**texts, "weights": weights}
@@ -96,92 +91,62 @@ def test_training_survives_the_death_of_workers(workers: Workers, tmp_path: Path
     assert survived == learned_bytes(train_in(tmp_path / "alone", None))
 
 
-class Cluster:
-    """A scheduler and a worker, started as on a cluster.
+@pytest.fixture(scope="module")
+def scheduler() -> Iterator[str]:
+    """Address of a scheduler as on a cluster, without workers."""
+    with distributed.LocalCluster(n_workers=0, dashboard_address=None) as cluster:
+        yield cluster.scheduler_address
 
-    :param folder: folder that they run in
-    """
 
-    def __init__(self, folder: Path) -> None:
-        self.folder = folder
-        self._file = folder / "scheduler.json"
-        self._worker: subprocess.Popen[bytes] | None = None
-        self._scheduler = self._begin("scheduler", "--host", "127.0.0.1", "--port", "0")
-        while not self._file.exists():
-            assert self._scheduler.poll() is None
-            time.sleep(0.1)
-        self.address = json.loads(self._file.read_text())["address"]
-
-    def begin_worker(self, **path: str) -> None:
-        """Start a worker in place of the last one, perhaps with a ``PYTHONPATH`` of its own."""
-        self._kill(self._worker)
-        with distributed.Client(self.address) as client:
+@contextlib.contextmanager
+def worker(scheduler: str, folder: Path, **path: str) -> Iterator[None]:
+    """A worker of the scheduler, perhaps with a ``PYTHONPATH`` of its own."""
+    command = [sys.executable, "-m", "dask", "worker", scheduler, "--nthreads", "1", "--no-nanny", "--no-dashboard"]
+    process = subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=folder, env={**os.environ, **path})
+    try:
+        with distributed.Client(scheduler) as client:
+            client.wait_for_workers(1, timeout=60)
+            yield
+            process.kill()
             while client.nthreads():  # the scheduler has not noticed yet
                 time.sleep(0.1)
-        self._worker = self._begin("worker", "--nthreads", "1", "--death-timeout", "60", **path)
-
-    def _begin(self, *arguments: str, **environment: str) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", "dask", *arguments, "--no-dashboard", "--scheduler-file", str(self._file)]
-        return subprocess.Popen(command, stderr=subprocess.DEVNULL, cwd=self.folder, env={**os.environ, **environment})
-
-    def stop(self) -> None:
-        """Kill both: dask takes eight seconds to leave politely."""
-        self._kill(self._worker)
-        self._kill(self._scheduler)
-
-    @staticmethod
-    def _kill(process: subprocess.Popen[bytes] | None) -> None:
-        if process is None:
-            return
-        with contextlib.suppress(psutil.NoSuchProcess):  # it has ended by itself
-            for child in psutil.Process(process.pid).children(recursive=True):
-                child.kill()
+    finally:
         process.kill()
         process.wait(timeout=30)
 
 
-@pytest.fixture(scope="module")
-def cluster(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Cluster]:
-    made = Cluster(tmp_path_factory.mktemp("cluster"))
-    yield made
-    made.stop()
-
-
-def test_a_cluster_gives_the_same(cluster: Cluster) -> None:
-    cluster.begin_worker()
-    with Workers(scheduler=cluster.address) as workers:
+def test_a_cluster_gives_the_same(scheduler: str, tmp_path: Path) -> None:
+    with worker(scheduler, tmp_path), Workers(scheduler=scheduler) as workers:
         assert list(workers.simulate_all([SPEC])) == [simulate(SPEC)]
 
 
-def test_a_worker_with_other_code_is_refused_whenever_it_comes(cluster: Cluster, tmp_path: Path) -> None:
+def test_a_worker_with_other_code_is_refused_whenever_it_comes(scheduler: str, tmp_path: Path) -> None:
     package = Path(cluster_module.__file__).parents[1]
     copied = shutil.copytree(package, tmp_path / "other" / "sarah", ignore=shutil.ignore_patterns("__pycache__"))
     with (copied / "episode" / "reward.py").open("a") as reward:
         reward.write("# another state\n")
     refused = rf"worker tcp://127.0.0.1:\d+ is refused, .*: sarah-sources is {source_hash()} here, and \w{{12}} there"
-    with Workers(scheduler=cluster.address) as workers:
-        cluster.begin_worker(PYTHONPATH=str(copied.parent))
+    with Workers(scheduler=scheduler) as workers, worker(scheduler, tmp_path, PYTHONPATH=str(copied.parent)):
         with pytest.raises(WorkersError, match=refused):
             next(workers.simulate_all([SPEC]))
         with pytest.raises(WorkersError, match=refused):
             train_in(tmp_path / "run", workers)
         assert not list(RunFolder(tmp_path / "run").episodes())
-    with pytest.raises(WorkersError, match=refused):
-        Workers(scheduler=cluster.address).__enter__()
+        with pytest.raises(WorkersError, match=refused):
+            Workers(scheduler=scheduler).__enter__()
 
 
-def test_a_worker_without_this_package_is_refused(cluster: Cluster, tmp_path: Path) -> None:
+def test_a_worker_without_this_package_is_refused(scheduler: str, tmp_path: Path) -> None:
     (tmp_path / "sarah.py").write_text("raise ModuleNotFoundError(\"No module named 'sarah'\")\n")
-    cluster.begin_worker(PYTHONPATH=str(tmp_path))
-    with distributed.Client(cluster.address) as client:
-        client.wait_for_workers(1, timeout=30)
-    with pytest.raises(WorkersError, match=r"tells no versions: .*No module named 'sarah'"):
-        Workers(scheduler=cluster.address).__enter__()
+    with (
+        worker(scheduler, tmp_path, PYTHONPATH=str(tmp_path)),
+        pytest.raises(WorkersError, match=r"tells no versions: .*No module named 'sarah'"),
+    ):
+        Workers(scheduler=scheduler).__enter__()
 
 
 def test_an_episode_continues_where_it_stands_or_begins_anew(stood: Any) -> None:
-    following = EpisodeSpec(SPEC.parameters, 2, config=SPEC.config)
-    expected = simulate(SPEC)
+    following, expected = EpisodeSpec(SPEC.parameters, 2, config=SPEC.config), simulate(SPEC)
     begin_episode(SPEC)
     assert len(stood.open) == 1
     assert finish_episode(SPEC).result == expected
@@ -203,16 +168,3 @@ def test_waiting_episodes_are_bounded_and_forgotten(stood: Any, monkeypatch: pyt
             begin_episode(EpisodeSpec(SPEC.parameters, seed, config=SPEC.config))
         assert len(stood.open) == 2
     assert not stood.open
-
-
-def test_bad_workers_are_refused() -> None:
-    for arguments, words in (
-        ((-1,), "workers must be between 0 and 256, not -1"),
-        ((1.5,), r"^workers must be a whole number, not 1\.5$"),
-        ((2, "tcp://127.0.0.1:1"), "give one of the two"),
-    ):
-        with pytest.raises(ConfigurationError, match=words):
-            Workers(*arguments)
-    for workers in (Workers(2), Workers(scheduler="tcp://127.0.0.1:1")):
-        with pytest.raises(ConfigurationError, match="workers start in a with statement"):
-            workers.submit(simulate, SPEC)

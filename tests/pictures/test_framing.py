@@ -1,19 +1,18 @@
 """The robot, its push and the words are within the picture, whatever the robot's dimensions."""
 
-import dataclasses
 import math
 from collections.abc import Iterator
 from contextlib import closing
-from pathlib import Path
+from dataclasses import replace
+from itertools import product
+from typing import Any
 
 import numpy as np
 import pytest
 from laboratory import NEEDS_PYBULLET, purple, turned
-from matplotlib.image import imread
 
 from sarah.episode.trace import Trace
 from sarah.pictures.overlay import arrow
-from sarah.pictures.robot_figure import draw_robot
 from sarah.pictures.video import FEET_HEIGHT, FEET_WIDTH, HEIGHT, TEXT_WIDTH, WIDTH, cameras, frames
 from sarah.robot.description import RobotDescription, describe_robot
 from sarah.robot.reading import Vector
@@ -35,17 +34,6 @@ FALLS = [(math.pi / 2, 0.0), (-math.pi / 2, 0.0), (0.0, math.pi / 2), (0.0, -mat
 SIZE = (320, 180)
 
 
-@pytest.fixture(scope="module", params=DIMENSIONS, ids=str)
-def robot(request: pytest.FixtureRequest) -> RobotDescription:
-    return describe_robot(request.param)
-
-
-@pytest.fixture(scope="module")
-def renderer(robot: RobotDescription) -> Iterator[Renderer]:
-    with closing(Renderer(robot)) as renderer:
-        yield renderer
-
-
 def poses(robot: RobotDescription) -> Iterator[tuple[Vector, tuple[float, float, float, float]]]:
     for x, y in DRIFTS:
         yield (x, y, robot.standing_height), (0.0, 0.0, 0.0, 1.0)
@@ -56,24 +44,15 @@ def poses(robot: RobotDescription) -> Iterator[tuple[Vector, tuple[float, float,
 def still(robot: RobotDescription, force: np.ndarray, drift: tuple[float, float] = (0.0, 0.0)) -> Trace:
     """Trace of a robot that stands still while it is pushed."""
     ticks = 4
-    rows = {name: np.zeros(ticks) for name in ("rate", "tilt", "stable_x", "score", "steps_per_second")}
-    rows |= {name: np.zeros((ticks, 3)) for name in ("acceleration", "angular_rate")}
-    rows |= {name: np.zeros((ticks, 6)) for name in ("joints", "targets")}
-    rows |= {name: np.zeros((ticks, 4)) for name in ("ankles", "pressures")}
+    widths = dict.fromkeys(("acceleration", "angular_rate"), 3) | dict.fromkeys(("joints", "targets"), 6)
+    rows: dict[str, Any] = {
+        name: np.zeros((ticks, width)) for name, width in {**widths, "ankles": 4, "pressures": 4}.items()
+    }
+    rows |= {name: np.zeros(ticks) for name in ("rate", "tilt", "stable_x", "score", "steps_per_second")}
     rows |= {"time": np.arange(ticks) / 10, "stance": np.ones(ticks), "push": np.tile(force, (ticks, 1))}
     rows["position"] = np.tile((*drift, robot.standing_height), (ticks, 1))
     rows["orientation"] = np.tile((0.0, 0.0, 0.0, 1.0), (ticks, 1))
     return Trace(phase=np.full(ticks, "shift"), **rows)
-
-
-def test_shadows_are_whole(robot: RobotDescription, renderer: Renderer) -> None:
-    high = (0.0, 0.0, 1.8 * robot.standing_height)
-    camera = renderer.camera.seeing(renderer.seen(high, (0.0, 0.0, 0.0, 1.0), {}), *SIZE)
-    picture = renderer.draw(high, (0.0, 0.0, 0.0, 1.0), {}, *SIZE, camera)
-    middles = np.reshape(robot.standing_soles, (2, 4, 3)).mean(axis=1) * (1.0, 1.0, 0.0)
-    for column, row in View(*SIZE, camera).pixels(middles):
-        place = (int(row), int(column))
-        assert picture[place].sum() < floor(*SIZE, camera)[place].sum() - 60
 
 
 def pushes(newtons: float, count: int) -> Iterator[np.ndarray]:
@@ -85,30 +64,28 @@ def is_within(pixels: np.ndarray, width: int, height: int) -> bool:
     return bool((pixels > 0.0).all() and (pixels < (width, height)).all())
 
 
-def test_the_whole_robot_is_in_the_picture(robot: RobotDescription, renderer: Renderer) -> None:
-    for position, orientation in poses(robot):
-        seen = renderer.seen(position, orientation, dict.fromkeys(robot.limits, 0.0))
-        camera = renderer.camera.seeing(seen, *SIZE)
-        pixels = View(*SIZE, camera).pixels(seen)
-        assert is_within(pixels, *SIZE)
-        picture = renderer.draw(position, orientation, {}, *SIZE)
-        rows, columns = np.nonzero(np.abs(picture.astype(int) - floor(*SIZE, camera)).sum(axis=-1) > 60)
-        assert len(rows) > 50
-        # What is drawn is between the points that the camera sees: nothing is cut off where they end.
-        assert columns.min() >= pixels[:, 0].min() - 1.5 and columns.max() <= pixels[:, 0].max() + 1.5
-        assert rows.min() >= pixels[:, 1].min() - 1.5 and rows.max() <= pixels[:, 1].max() + 1.5
-
-
-def test_pushes_from_all_sides_are_in_the_picture(robot: RobotDescription, renderer: Renderer) -> None:
-    for drift in DRIFTS:
-        for force in pushes(150.0, 8):
+@pytest.mark.parametrize("dimensions", DIMENSIONS, ids=str)
+def test_the_whole_robot_and_every_push_are_in_the_picture(dimensions: dict[str, float]) -> None:
+    robot = describe_robot(dimensions)
+    with closing(Renderer(robot)) as renderer:
+        for position, orientation in poses(robot):
+            seen = renderer.seen(position, orientation, dict.fromkeys(robot.limits, 0.0))
+            camera = renderer.camera.seeing(seen, *SIZE)
+            pixels = View(*SIZE, camera).pixels(seen)
+            assert is_within(pixels, *SIZE)
+            picture = renderer.draw(position, orientation, {}, *SIZE)
+            rows, columns = np.nonzero(np.abs(picture.astype(int) - floor(*SIZE, camera)).sum(axis=-1) > 60)
+            assert len(rows) > 50
+            # What is drawn is between the points that the camera sees: nothing is cut off where they end.
+            assert columns.min() >= pixels[:, 0].min() - 1.5 and columns.max() <= pixels[:, 0].max() + 1.5
+            assert rows.min() >= pixels[:, 1].min() - 1.5 and rows.max() <= pixels[:, 1].max() + 1.5
+        for drift, force in product(DRIFTS, pushes(150.0, 8)):
             trace = still(robot, force, drift)
             camera, feet = cameras(trace, robot, renderer)
-            view = View(WIDTH, HEIGHT, camera)
             pose = tuple(trace.position[0]), (0.0, 0.0, 0.0, 1.0), dict.fromkeys(robot.limits, 0.0)
             ends = arrow(trace.position[0], force, robot.scale)
-            assert is_within(view.pixels(np.concatenate((renderer.seen(*pose), ends))), WIDTH, HEIGHT)
-            close = View(FEET_WIDTH, FEET_HEIGHT, feet)
+            far, close = View(WIDTH, HEIGHT, camera), View(FEET_WIDTH, FEET_HEIGHT, feet)
+            assert is_within(far.pixels(np.concatenate((renderer.seen(*pose), ends))), WIDTH, HEIGHT)
             assert is_within(close.pixels(renderer.seen(*pose, only_feet=True)), FEET_WIDTH, FEET_HEIGHT)
 
 
@@ -129,14 +106,12 @@ def test_no_arrow_and_no_label_touches_the_edge(dimensions: dict[str, float]) ->
         assert not (marks[:5].any() or marks[-5:].any() or marks[:, :5].any() or marks[:, -5:].any())
 
 
-CAPTIONS = [
-    *(", ".join(f"P{index} = {index / 7:.2f}" for index in range(60)), "one\ntwo\nthree"),
-    "a_task_with_a_name_" + 20 * "without_end_" + ": P1 0.40",
-]
+NUMBERS = ", ".join(f"P{index} = {index / 7:.2f}" for index in range(60))
+CAPTIONS = [NUMBERS, "one\ntwo\nthree", "a_task_with_a_name_" + 20 * "without_end_" + ": P1 0.40"]
 
 
 @pytest.mark.parametrize("caption", CAPTIONS)
-def test_long_captions_stay_clear_of_edges_of_the_robot_and_of_the_phases(caption: str) -> None:
+def test_long_captions_stay_clear_of_edges_robot_and_phases(caption: str) -> None:
     robot = describe_robot()
     trace = still(robot, np.zeros(3))
     (with_caption,), (without,) = (frames(trace, robot, (0.0,), text) for text in (caption, ""))
@@ -145,17 +120,8 @@ def test_long_captions_stay_clear_of_edges_of_the_robot_and_of_the_phases(captio
     assert columns.min() > 5 and columns.max() < TEXT_WIDTH
 
 
-@pytest.mark.parametrize("dimensions", [{"thigh_length": 3.3}, {"torso_height": 0.03, "shank_length": 0.031}], ids=str)
-def test_the_labelled_figure_shows_all_groups(dimensions: dict[str, float], tmp_path: Path) -> None:
-    files = draw_robot(describe_robot(dimensions), tmp_path / "robot")
-    picture = imread(files[0])[..., :3]
-    assert picture.shape[:2] == (910, 700)
-    for colour in ((0.0, 0.45, 0.7), (0.84, 0.3, 0.05), (0.95, 0.7, 0.1)):
-        assert (np.abs(picture - colour).max(axis=-1) < 0.2).sum() > 100
-
-
 def test_a_robot_that_fell_while_it_stood_is_drawn() -> None:
     robot = describe_robot()
-    trace = dataclasses.replace(still(robot, np.zeros(3)), phase=np.full(4, "stand"))
+    trace = replace(still(robot, np.zeros(3)), phase=np.full(4, "stand"))
     (picture,) = frames(trace, robot, (0.2,))
     assert picture.size == (WIDTH, HEIGHT)

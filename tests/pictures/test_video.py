@@ -1,8 +1,9 @@
 """Videos of episodes."""
 
-import dataclasses
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
@@ -11,10 +12,7 @@ from laboratory import need, purple
 from PIL import Image
 from PIL.GifImagePlugin import GifImageFile
 
-from sarah.episode.episode import simulate
-from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BalanceConfig
+from sarah import BalanceConfig, EpisodeSpec, Push, simulate
 from sarah.episode.trace import Trace
 from sarah.errors import ConfigurationError
 from sarah.pictures.video import GIF_SIZE, HEIGHT, WIDTH, check_path, frame_times, frames, write_video
@@ -26,8 +24,7 @@ PUSHED = BalanceConfig(time_limit=2.5, push=Push((100.0, 100.0), (180.0, 180.0),
 @pytest.fixture(scope="module")
 def trace() -> Trace:
     result = simulate(EpisodeSpec((0.0, 0.0, 0.0, 0.0), 0, "balance", PUSHED), record_trace=True)
-    assert result.trace is not None
-    return result.trace
+    return cast(Trace, result.trace)
 
 
 def film(trace: Trace, *times: float, caption: str = "") -> list[np.ndarray]:
@@ -46,9 +43,7 @@ def test_frames_show_robot_and_words(trace: Trace) -> None:
 
 
 def test_a_score_that_nobody_knows_is_not_written(trace: Trace) -> None:
-    ((known,), (unknown,)) = (
-        film(one, 1.0) for one in (trace, dataclasses.replace(trace, score=np.full(len(trace), np.nan)))
-    )
+    ((known,), (unknown,)) = (film(one, 1.0) for one in (trace, replace(trace, score=np.full(len(trace), np.nan))))
     rows, columns = np.nonzero((known != unknown).any(axis=-1))
     assert len(rows) > 100 and columns.max() < WIDTH / 4
     assert not np.less(unknown[rows.min() : rows.max()], 140).all(axis=-1)[:, : WIDTH // 5].any()
@@ -59,7 +54,7 @@ def test_push_is_marked_while_it_acts_and_a_moment_longer(trace: Trace) -> None:
     assert before == long_after == 0 and during > 1000 and after > 1000
 
 
-def test_speed_stretches_the_video_and_no_frame_is_behind_the_end() -> None:
+def test_speed_stretches_the_video_and_no_frame_is_past_the_end() -> None:
     times = frame_times(2.0, 3.0, 25.0)
     assert times[0] == 2.0 and times[-1] == pytest.approx(3.0) and len(times) == 26
     assert len(frame_times(2.0, 3.0, 25.0, speed=0.5)) == 51

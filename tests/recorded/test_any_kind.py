@@ -1,6 +1,5 @@
 """What a new kind of recorded work has of its own is its settings, requests and outcomes; the rest comes with it."""
 
-import dataclasses
 import errno
 import hashlib
 import json
@@ -8,6 +7,7 @@ import re
 import subprocess
 import sys
 import time
+from dataclasses import asdict
 from pathlib import Path
 
 import pytest
@@ -24,7 +24,7 @@ GAME = Game(3, 40)
 
 def begun(path: Path) -> Path:
     def write_game() -> None:
-        (path / "game.json").write_text(json.dumps(dataclasses.asdict(GAME)))
+        (path / "game.json").write_text(json.dumps(asdict(GAME)))
 
     Folder(path, THROWS).begin(write_game)
     return path
@@ -95,7 +95,7 @@ def test_rows_of_another_training_do_not_count(tmp_path: Path) -> None:
     path, other = (tmp_path / str(seed) / "journal.jsonl" for seed in (3, 4))
     first, _ = path.read_bytes().split(b"\n", 1)
     path.write_bytes(first + b"\n" + other.read_bytes().split(b"\n", 1)[1])
-    with Folder(path.parent, THROWS).journal(dataclasses.asdict(GAME), 40) as journal:
+    with Folder(path.parent, THROWS).journal(asdict(GAME), 40) as journal:
         assert not journal.replaying
 
 
@@ -149,7 +149,7 @@ def test_what_somebody_else_has_in_a_folder_is_left_alone(other: str, tmp_path: 
 def test_its_folder_belongs_to_one(path: Path) -> None:
     with pytest.raises(RunFolderError, match=r"not empty: name another .*, or go on with python throws.py --resume"):
         begun(path)
-    with Folder(path, THROWS).journal(dataclasses.asdict(GAME), 40), pytest.raises(ResumeError, match="another game"):
+    with Folder(path, THROWS).journal(asdict(GAME), 40), pytest.raises(ResumeError, match="another game"):
         play(path, GAME)
     assert Folder(path, THROWS).versions() == versions() and (path / "command.txt").is_file()
     with pytest.raises(RunFolderError, match=r"not the folder of a finished game: it has no parameters.json"):

@@ -1,10 +1,10 @@
 """The race: a whole small one that is judged, interrupted and shared, and its files."""
 
 import csv
-import dataclasses
 import threading
 import time
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 from statistics import mean
 from types import SimpleNamespace
@@ -13,10 +13,7 @@ from typing import Any
 import pytest
 from laboratory import COARSE_PHYSICS
 
-from sarah.episode.episode import simulate
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING
+from sarah import STEPPING, EpisodeConfig, EpisodeSpec, simulate
 from sarah.episode.workers import Workers
 from sarah.errors import ResumeError, RunFolderError
 from sarah.files import locked
@@ -52,10 +49,10 @@ def test_a_race_goes_on_where_it_was(tmp_path: Path, monkeypatch: pytest.MonkeyP
     monkeypatch.setattr(race_module, "train", lambda *_, **__: pytest.fail("it is trained already"))
     (entries[1].folder / "race.csv").unlink()  # its evaluation was interrupted
     assert race(entries, Workers()) == curves
-    (more,) = race([dataclasses.replace(entries[0], evaluations=Evaluations(4, 2))], Workers())
-    assert more == dataclasses.replace(curves[0], final=tuple(judged))
+    (more,) = race([replace(entries[0], evaluations=Evaluations(4, 2))], Workers())
+    assert more == replace(curves[0], final=tuple(judged))
 
-    other = [dataclasses.replace(entries[0], config=dataclasses.replace(TINY, episodes=11))]
+    other = [replace(entries[0], config=replace(TINY, episodes=11))]
     with pytest.raises(RunFolderError, match="naf-s0 is a training with episodes 10, not 11: name another folder"):
         race(other, Workers())
 
@@ -100,11 +97,11 @@ def test_a_race_says_before_it_starts_what_there_is_to_do(tmp_path: Path, capsys
     race(entries[:1], Workers(), progress_bar=True)
     shown = capsys.readouterr().err
     assert shown.startswith(said(1, 2 * 1 + 2)) and "1/1" in shown
-    more = [dataclasses.replace(entry, evaluations=Evaluations(3, 1)) for entry in entries]
+    more = [replace(entry, evaluations=Evaluations(3, 1)) for entry in entries]
     race(more, Workers(), progress_bar=True)
     assert capsys.readouterr().err.startswith(said(2, 2 * (2 * 1 + 3)))
     race(more, Workers(), progress_bar=True)
-    race([dataclasses.replace(entry, evaluations=Evaluations(4, 1)) for entry in entries], Workers())
+    race([replace(entry, evaluations=Evaluations(4, 1)) for entry in entries], Workers())
     assert not capsys.readouterr().err
 
 
@@ -114,23 +111,22 @@ def test_a_race_does_not_mix_states_of_the_code(tmp_path: Path, monkeypatch: pyt
     finished = race([first], Workers())
     monkeypatch.undo()
     assert race([first], Workers()) == finished  # nothing new comes into the table
-    for entries in ([first, second], [dataclasses.replace(first, evaluations=Evaluations(3, 1))]):
+    for entries in ([first, second], [replace(first, evaluations=Evaluations(3, 1))]):
         with pytest.raises(ResumeError, match=r"random-s0 cannot be resumed: .*sarah-sources is \w+ here, and another"):
             race(entries, Workers())
     assert not second.folder.exists()
 
 
 def test_a_race_leaves_alone_what_is_not_its_own_or_in_use(tmp_path: Path) -> None:
-    precious = tmp_path / "naf-s0" / "parameters.json"
-    precious.parent.mkdir()
-    precious.write_text("{}")
-    with pytest.raises(RunFolderError, match="is not of a race"):
-        race(entries_of(("naf",), range(1), TINY, ONCE, tmp_path), Workers())
-    assert precious.read_text() == "{}"
     (entry,) = entries_of(("random",), range(1), TINY, ONCE, tmp_path)
-    begun = RunFolder.create(tmp_path / "random-s0", entry.config)
+    entry.folder.mkdir()
+    (entry.folder / "parameters.json").write_text("{}")
+    with pytest.raises(RunFolderError, match="is not of a race"):
+        race([entry], Workers())
+    assert (entry.folder / "parameters.json").read_text() == "{}"
+    begun = RunFolder.create(tmp_path / "begun", entry.config)
     with begun.journal_of(entry.config), pytest.raises(RunFolderError, match="in use by another training"):
-        run_entry(entry)
+        run_entry(replace(entry, folder=begun.path))
     assert begun.config() == entry.config
 
 
@@ -153,8 +149,6 @@ def test_a_race_leaves_out_what_another_is_at_until_its_end(tmp_path: Path) -> N
 
 
 HEAD = "episodes,score,seconds,evaluations\n"
-
-
 DAMAGED = [
     *(("race.csv", content) for content in ("", HEAD + 50 * "5,0.5,1,1\n", f"{HEAD}5,x,1,1\n10,0.5,1,1\n")),
     *(("race_scores.csv", f"seed,score\n{row}\n") for row in ("0,x", "1,0.5")),
@@ -169,7 +163,7 @@ def test_damaged_tables_are_named(name: str, content: str, tmp_path: Path) -> No
     race([entry], Workers())
     (entry.folder / name).write_text(content)
     if name == "recommendations.csv":
-        entry = dataclasses.replace(entry, evaluations=Evaluations(2, 1))
+        entry = replace(entry, evaluations=Evaluations(2, 1))
     with pytest.raises(RunFolderError, match=r"random-s0.* cannot be read") as raised:
         race([entry], Workers())
     assert len(str(raised.value).splitlines()) == 1

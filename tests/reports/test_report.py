@@ -1,12 +1,12 @@
 """A run as one page, and what TensorBoard shows of it."""
 
 import base64
-import dataclasses
 import json
 import re
 import shutil
 from collections import Counter
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -14,19 +14,16 @@ import pytest
 from laboratory import NEEDS_PYBULLET, RESULT
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 from tensorboard.plugins.hparams.plugin_data_pb2 import HParamsPluginData
+from terminal import done
 
-from sarah.cli import figures as figures_command
-from sarah.cli import report as report_command
+from sarah import EpisodeConfig, EpisodeSpec, Physics
 from sarah.episode.episode import Episode
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import ConfigurationError
 from sarah.reports import all_figures, report, training_figures
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import is_installed
-from sarah.simulation.physics import Physics
 from sarah.training import train as training
 from sarah.training.train import train
 
@@ -45,21 +42,13 @@ def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
     return made
 
 
-def call(monkeypatch: pytest.MonkeyPatch, command: Any, *arguments: object) -> None:
-    monkeypatch.setattr("sys.argv", ["sarah-report", *map(str, arguments)])
-    command.main()
-
-
 @NEEDS_PYBULLET
-def test_report_is_a_page_that_needs_nothing_else(
-    run: RunFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    page = tmp_path / "page.html"
-    call(monkeypatch, report_command, run.path, "--out", page, "--episodes", 2, "--seconds", 1, 1.2)
-    shown, said = capsys.readouterr()
-    assert f"{run.path}\n" in said and "--task" not in said
-    assert shown == f"{page}\n" and [path.name for path in tmp_path.iterdir()] == ["page.html"]
-    text = page.read_text(encoding="utf-8")
+def test_report_is_a_page_that_needs_nothing_else(run: RunFolder, tmp_path: Path) -> None:
+    line = f"sarah-report {run.path} --out page.html --episodes 2 --seconds 1 1.2"
+    ended = done(*line.split(), cwd=tmp_path)
+    assert f"{run.path}\n" in ended.stderr and "--task" not in ended.stderr
+    assert ended.stdout == "page.html\n" and [path.name for path in tmp_path.iterdir()] == ["page.html"]
+    text = (tmp_path / "page.html").read_text(encoding="utf-8")
     addresses = re.findall(r'(?:src|href)="([^"]{0,40})', text)
     assert addresses and all(address.startswith("data:") for address in addresses) and "url(" not in text
     pictures = re.findall(r'data:image/png;base64,([^"]+)', text)
@@ -78,25 +67,17 @@ def test_report_is_a_page_that_needs_nothing_else(
 
 
 @pytest.fixture
-def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
+def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[Any]:
     """Counts of what is read of run folders, and of the episodes that are simulated, by parameters and seed."""
-    counted: Counter[str] = Counter()
+    counted: Counter[Any] = Counter()
 
-    class Counting(Episode):
-        def __init__(self, config: EpisodeConfig, seed: int, *arguments: Any) -> None:
-            super().__init__(config, seed, *arguments)
-            self.seed = seed
+    def count(owner: type, name: str, key: Callable[..., Any]) -> None:
+        original = getattr(owner, name)
+        monkeypatch.setattr(owner, name, lambda *given: (counted.update([key(*given)]), original(*given))[1])
 
-        def start(self, parameters: tuple[float, ...]) -> None:
-            counted[f"{parameters} with seed {self.seed}"] += 1
-            super().start(parameters)
-
-    def counting(name: str, read: Callable[..., Any]) -> Callable[..., Any]:
-        return lambda *arguments: (counted.update([name]), read(*arguments))[1]
-
-    monkeypatch.setattr("sarah.episode.episode.Episode", Counting)
+    count(Episode, "of", lambda spec, *_: (spec.parameters, spec.seed))
     for name in ("config", "config_text", "parameters", "episodes", "recommendations"):
-        monkeypatch.setattr(RunFolder, name, counting(name, getattr(RunFolder, name)))
+        count(RunFolder, name, lambda *_, name=name: name)
     for module in (training_figures, all_figures, report):  # drawing would take most of the time
         for name in {"save", "draw_robot", "draw_state_machine", "frames"} & set(vars(module)):
             monkeypatch.setattr(module, name, lambda *_, **__: [Path("drawn.png")])
@@ -105,21 +86,18 @@ def counts(monkeypatch: pytest.MonkeyPatch) -> Counter[str]:
 
 
 @pytest.mark.parametrize("task", TASKS)
-def test_a_run_is_read_once_and_no_episode_is_simulated_twice(
-    task: str, counts: Counter[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    episode = dataclasses.replace(TASKS[task].episode, time_limit=1.2, physics=PHYSICS)
+def test_a_run_is_read_once_and_no_episode_is_simulated_twice(task: str, counts: Counter[Any], tmp_path: Path) -> None:
+    episode = replace(TASKS[task].episode, time_limit=1.2, physics=PHYSICS)
     config = TrainingConfig(task, episodes=1, episode=episode)
     run, learned = RunFolder.create(tmp_path / "run", config), (0.5,) * len(TASKS[task].parameters)
     run.append_episode(0, EpisodeSpec(learned, 2**31, task, episode), RESULT)
     run.write_parameters({"parameters": dict(zip(TASKS[task].parameter_names, learned, strict=True))})
-    page = tmp_path / "page.html"
-    for command, out, options in ((report_command, page, ("--episodes", 2)), (figures_command, tmp_path / "out", ())):
+    for line in ("sarah-report run --out page.html --episodes 2", "sarah-figures run --out out"):
         counts.clear()
-        call(monkeypatch, command, run.path, "--out", out, *options)
-        assert counts[f"{learned} with seed 0"] == counts["episodes"] == counts["config"] == 1
+        done(*line.split(), cwd=tmp_path)
+        assert counts[learned, 0] == counts["episodes"] == counts["config"] == 1
         assert set(counts.values()) == {1}, counts
-    assert ("about 0.4" in page.read_text()) == (task == "stepping")
+    assert ("about 0.4" in (tmp_path / "page.html").read_text()) == (task == "stepping")
 
 
 @pytest.mark.usefixtures("counts")
@@ -129,7 +107,7 @@ def test_what_a_report_cannot_show_is_said(run: RunFolder, tmp_path: Path, monke
 
     monkeypatch.setattr(report, "check_renderer", refuse)
     folder = shutil.copytree(run.path, tmp_path / "<i>run")  # a name that is no HTML
-    call(monkeypatch, report_command, folder, "--out", tmp_path / "page.html", "--episodes", 1)
+    done("sarah-report", str(folder), "--out", "page.html", "--episodes", "1", cwd=tmp_path)
     page = (tmp_path / "page.html").read_text()
     assert "No video: pictures need a package." in page and "<video" not in page
     assert "&lt;i&gt;run" in page and "<i>" not in page
@@ -160,7 +138,7 @@ def test_tensorboard_shows_curves_in_groups_and_pictures(run: RunFolder) -> None
 @NEEDS_PYBULLET
 def test_pictures_change_nothing_of_a_training(run: RunFolder, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(training, "SUMMARY_EPISODES", 2)
-    config = dataclasses.replace(run.config(), pictures=0)
+    config = replace(run.config(), pictures=0)
     without = RunFolder.create(tmp_path / "without", config)
     train(config, without)
     for name in ("episodes.csv", "recommendations.csv", "progress.csv", "parameters.json"):

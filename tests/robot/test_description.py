@@ -91,10 +91,7 @@ WIDTH = r"sole_half_width 0\.05 \+ contact_radius 0\.01"
         ({"thigh_length": "long"}, "'thigh_length' must be a number between 0.033 and 3.3 m, not 'long'"),
         ({"thigh_length": -0.3}, "'thigh_length' must be a number between 0.033 and 3.3 m, not -0.3"),
         ({"hinge_height": 0.005}, r"'hinge_height' must be at least 0\.015 m, .* plate_thickness 0\.01, not 0\.005: "),
-        (
-            {"hip_offset": 0.04, "contact_radius": 0.01},
-            rf"'hip_offset' must be at least 0\.06 m, .* {WIDTH}, not 0\.04: ",
-        ),
+        ({"hip_offset": 0.04, "contact_radius": 0.01}, rf"'hip_offset' must be at least 0\.06 m, .* {WIDTH}, not 0"),
     ],
 )
 def test_bad_dimensions_are_refused_by_name(dimensions: dict[str, float], message: str) -> None:
@@ -104,8 +101,6 @@ def test_bad_dimensions_are_refused_by_name(dimensions: dict[str, float], messag
 
 
 def missing(kind: str, name: str, part: str) -> Change:
-    """A change that removes a part of an element."""
-
     def change(root: ElementTree.Element) -> None:
         element = find(root, kind, name)
         element.remove(next(element.iter(part)))
@@ -114,7 +109,6 @@ def missing(kind: str, name: str, part: str) -> Change:
 
 
 def with_value(kind: str, name: str, part: str, /, **values: str) -> Change:
-    """A change that gives other values to a part of an element."""
     return lambda root: next(find(root, kind, name).iter(part)).attrib.update(values)
 
 

@@ -1,16 +1,15 @@
-"""Robots of other sizes: what goes with length and mass, by Froude's rule."""
+"""Robots of other sizes: what goes with length and mass, by Froude's rule; and how targets go to their goals."""
 
-import dataclasses
+from dataclasses import replace
 
 import pytest
 
+from sarah import Change, EpisodeConfig, OperationConfig, Push, PushedConfig
 from sarah.control.constants import STANDARD_CONSTANTS, ControllerConstants
-from sarah.episode.push import Push, PushedConfig
 from sarah.episode.reward import frequency_hint, natural_step_frequency
-from sarah.episode.settings import EpisodeConfig
-from sarah.operation.settings import Change, OperationConfig
 from sarah.robot.description import describe_robot
 from sarah.robot.dimensions import dimensions_alike, scale_of
+from sarah.robot.filters import clipped, ramped
 from sarah.robot.scale import Scale
 
 
@@ -54,12 +53,11 @@ def test_what_is_given_stays() -> None:
     config = PushedConfig(dimensions=dimensions_alike(0.25, 0.1), controller=own, push=Push(newtons=(7.0, 7.0)))
     assert config.controller == own and config.push == Push(newtons=(7.0, 7.0))
     assert describe_robot({**dimensions_alike(0.25, 0.1), "leg_effort": 150.0}).efforts["left_leg_length"] == 150.0
-    assert dataclasses.replace(config, payload=1.0).controller == own
+    assert replace(config, payload=1.0).controller == own
 
 
 def test_settings_go_with_the_ratio_of_both_robots() -> None:
-    """And what was set by hand stays."""
-    settings = PushedConfig(payload=3.0, controller=dataclasses.replace(STANDARD_CONSTANTS, pad_threshold=60.0))
+    settings = PushedConfig(payload=3.0, controller=replace(STANDARD_CONSTANTS, pad_threshold=60.0))
     small = settings.for_robot(dimensions_alike(0.25, 0.1))
     assert (small.payload, small.controller.pad_threshold) == pytest.approx((0.3, 6.0))
     assert small.for_robot(dimensions_alike(1.0, 1.0)).controller.pad_threshold == pytest.approx(60.0)
@@ -71,13 +69,13 @@ def test_settings_go_with_the_ratio_of_both_robots() -> None:
 
 def test_a_dimension_changed_in_operation_leaves_the_controller() -> None:
     config = OperationConfig(changes=(Change(0.1, {"dimensions": {"torso_mass": 16.0}}),))
-    assert config.robot_after(1) == dataclasses.replace(config.robot, dimensions={"torso_mass": 16.0})
+    assert config.robot_after(1) == replace(config.robot, dimensions={"torso_mass": 16.0})
 
 
 def test_another_engine_gets_the_inertia_of_the_robots_size() -> None:
     for engine in ("pybullet", "mujoco"):
         config = EpisodeConfig(dimensions=dimensions_alike(0.25, 0.1), engine=engine)
-        there = dataclasses.replace(config, engine="pybullet")
+        there = replace(config, engine="pybullet")
         assert there.physics.added_plate_inertia == pytest.approx(0.003 * 0.00625)  # type: ignore[attr-defined]
 
 
@@ -86,6 +84,13 @@ def test_a_robot_is_told_if_its_step_frequency_is_not_rewarded() -> None:
     assert natural_step_frequency(EpisodeConfig()) == 3.0 and frequency_hint(EpisodeConfig()) is None
     assert natural_step_frequency(small) == pytest.approx(6.0)
     assert "--episode.step-frequency 6 suits it" in str(frequency_hint(small))
-    assert frequency_hint(dataclasses.replace(small, step_frequency=6.0)) is None
-    slow = dataclasses.replace(small, controller=dataclasses.replace(small.controller, minimum_phase_seconds=0.1))
+    assert frequency_hint(replace(small, step_frequency=6.0)) is None
+    slow = replace(small, controller=replace(small.controller, minimum_phase_seconds=0.1))
     assert natural_step_frequency(slow) == pytest.approx(1 / 0.3)
+
+
+def test_a_ramp_goes_by_its_largest_change_a_clip_to_its_limit() -> None:
+    goals = (-1.0, -0.05, 0.05, 1.0)
+    assert (
+        [ramped(0.0, goal, 0.1) for goal in goals] == [clipped(goal, 0.1) for goal in goals] == [-0.1, -0.05, 0.05, 0.1]
+    )

@@ -1,7 +1,7 @@
 """The folder of a training: its tables, its parameters, the episodes to choose from, and what is told of an episode."""
 
-import dataclasses
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -9,18 +9,14 @@ import pytest
 from interrupted import EPISODE
 from laboratory import COARSE_PHYSICS
 
-from sarah.episode.episode import simulate
-from sarah.episode.push import Push, PushedConfig
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
-from sarah.episode.trace import Trace
+from sarah import BALANCE, STEPPING, BalanceConfig, EpisodeConfig, EpisodeSpec, Push, PushedConfig, simulate
+from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.workers import Workers, begin_episode, finish_episode
 from sarah.errors import ConfigurationError, RunFolderError
 from sarah.recorded.folder import new_path
 from sarah.robot.dimensions import dimensions_alike
 from sarah.runs.config import TrainingConfig
-from sarah.runs.episode_words import changed_settings, differences, told_of
+from sarah.runs.episode_words import changed_settings, differences, told_of, told_settings
 from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_episodes import choose_episode, episode_of_parameters, episodes_of_run
 from sarah.runs.run_folder import RunFolder
@@ -134,7 +130,7 @@ EPISODES = [(begin_episode, [3]), (finish_episode, [3]), (finish_episode, [3, 4]
 def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: list[int], tmp_path: Path) -> None:
     run = RunFolder.create(tmp_path / "run", CONFIG)
     config = EpisodeConfig(time_limit=2.0, physics=COARSE_PHYSICS)
-    specs = [EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), seed, config=config) for seed in seeds]
+    specs = [EpisodeSpec(PAPER_STEPPING, seed, config=config) for seed in seeds]
     with run.journal_of(CONFIG) as journal:
         simulated = RecordedEpisodes(journal, Workers()).submit(function, *specs).result()
     with run.journal_of(CONFIG) as journal:
@@ -145,24 +141,14 @@ def test_the_journal_gives_back_every_bit(function: Callable[..., Any], seeds: l
 
 
 SPEC = EpisodeSpec((1.0, 0.0, 1.0, 0.0), 5, BALANCE, BalanceConfig(time_limit=1.5, push=Push(40.0, 90.0, 1.2)))
-UNPUSHED = dataclasses.replace(BALANCE.episode, push=Push(0.0))
-USUAL = dataclasses.replace(SPEC, config=UNPUSHED)
+UNPUSHED = replace(BALANCE.episode, push=Push(0.0))
 
 
-@pytest.fixture(scope="module")
-def trace() -> Trace:
-    found = simulate(SPEC, record_trace=True).trace
-    assert found is not None
-    return found
-
-
-@pytest.fixture(scope="module")
-def still(trace: Trace) -> Trace:
-    return dataclasses.replace(trace, push=0.0 * trace.push)
-
-
-def test_the_pushes_of_the_trace_are_told(trace: Trace, still: Trace) -> None:
+def test_the_pushes_of_the_trace_are_told() -> None:
+    trace = simulate(SPEC, record_trace=True).trace
+    assert trace is not None
     assert told_of(SPEC, trace) == ["push of 40 N forward at 1.20 s", "time_limit 1.5"]
+    still = replace(trace, push=0.0 * trace.push)
     assert told_of(SPEC, still) == ["time_limit 1.5"]  # it ended before its push
 
 
@@ -175,46 +161,37 @@ DIMENSIONS, WIDER = dimensions_alike(1.1, 1.0), {"torso_width": 0.3, "sole_half_
         ({}, []),
         ({"payload": 5.0}, ["payload 5"]),
         ({"dimensions": WIDER}, ["dimensions torso_width 0.3, sole_half_width 0.06"]),
-        (USUAL.config.for_robot(DIMENSIONS).__dict__, [f"{len(DIMENSIONS)} dimensions of its own"]),
+        (UNPUSHED.for_robot(DIMENSIONS).__dict__, [f"{len(DIMENSIONS)} dimensions of its own"]),
         ({"stepping": (0.4, 1.3, 0.1, 1.0, 1.0)}, ["P1 to P5 0.40, 1.30, 0.10, 1.00, 1.00"]),
         ({"terrain": Terrain(friction_left=(0.2, 0.2))}, ["terrain.friction_left 0.2"]),
         ({"terrain": Terrain(roughness=0.01, reach=0.9)}, ["terrain.roughness 0.01", "terrain.reach 0.9"]),
     ],
 )
-def test_settings_that_differ_are_told(settings: Any, told: list[str], still: Trace) -> None:
-    changed = dataclasses.replace(USUAL, config=dataclasses.replace(UNPUSHED, **settings))
-    assert told_of(changed, still) == told
-    assert told_of(EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), 0), still) == []
+def test_settings_that_differ_are_told(settings: Any, told: list[str]) -> None:
+    changed = replace(UNPUSHED, **settings)
+    assert told_settings(EpisodeSpec(SPEC.parameters, 5, BALANCE, changed)) == told
+    assert told_settings(EpisodeSpec(PAPER_STEPPING, 0)) == []
 
 
 def test_what_an_option_changes_has_both_values() -> None:
-    changed = dataclasses.replace(UNPUSHED, payload=3.0, stepping=(0.5, 1.0, 0.0, 1.0, 1.0))
-    other = dataclasses.replace(UNPUSHED, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
+    changed = replace(UNPUSHED, payload=3.0, stepping=(0.5, 1.0, 0.0, 1.0, 1.0))
+    other = replace(UNPUSHED, stepping=(0.5, 1.0, 0.0, 1.0, 0.75))
     stepping = "stepping 0.5, 1, 0, 1, 1 instead of 0.5, 1, 0, 1, 0.75"
     assert list(differences(changed, other)) == ["payload 3 instead of 0", stepping]
     assert list(differences(PushedConfig(push=UNPUSHED.push), UNPUSHED)) == []  # only one of both has P1 to P5
 
 
-@pytest.mark.parametrize(
-    ("payload", "of_subject", "words"),
-    [
-        (0.0, 0.0, []),
-        (3.0, 0.0, ["payload 3"]),
-        (3.0, 3.0, ["payload 3"]),
-        (3.0, 5.0, ["payload 3 instead of 5"]),
-        (0.0, 5.0, ["payload 0 instead of 5"]),
-    ],
-)
-def test_a_special_setting_that_was_not_kept_has_both_values(
-    payload: float, of_subject: float, words: list[str]
-) -> None:
-    subject = dataclasses.replace(BALANCE.episode, payload=of_subject)
-    assert list(changed_settings(BALANCE, dataclasses.replace(subject, payload=payload), subject)) == words
+def test_a_special_setting_that_was_not_kept_has_both_values() -> None:
+    for payload, of_subject, words in (
+        *((0.0, 0.0, []), (3.0, 0.0, ["payload 3"]), (3.0, 3.0, ["payload 3"])),
+        *((3.0, 5.0, ["payload 3 instead of 5"]), (0.0, 5.0, ["payload 0 instead of 5"])),
+    ):
+        subject = replace(BALANCE.episode, payload=of_subject)
+        assert list(changed_settings(BALANCE, replace(subject, payload=payload), subject)) == words
 
 
-def test_the_ground_is_told_as_the_seed_draws_it(still: Trace) -> None:
+def test_the_ground_is_told_as_the_seed_draws_it() -> None:
     ranges = Terrain(slope_degrees=(2.0, 8.0), roughness=(0.0, 0.02))
-    spec = EpisodeSpec((0.4, 1.3, 0.1, 1.0, 1.0), 5, config=EpisodeConfig(terrain=ranges))
-    drawn = draw_terrain(ranges, 5)
-    names = ("slope_degrees", "direction_degrees", "roughness")
-    assert told_of(spec, still) == [f"terrain.{name} {getattr(drawn, name)[0]:.3g}" for name in names]
+    told = told_settings(EpisodeSpec(PAPER_STEPPING, 5, config=EpisodeConfig(terrain=ranges)))
+    names, drawn = ("slope_degrees", "direction_degrees", "roughness"), draw_terrain(ranges, 5)
+    assert told == [f"terrain.{name} {getattr(drawn, name)[0]:.3g}" for name in names]

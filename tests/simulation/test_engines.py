@@ -1,9 +1,9 @@
 """The second engine: the same robot, the same bytes each time, and an error where it is not installed."""
 
-import dataclasses
 import math
 import subprocess
 import sys
+from dataclasses import replace
 from importlib.machinery import ModuleSpec
 from pathlib import Path
 
@@ -11,11 +11,9 @@ import pytest
 from laboratory import NEEDS_PYBULLET, advance
 from terminal import run
 
+from sarah import EpisodeConfig, EpisodeSpec, Physics, evaluate
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.evaluation import evaluate
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks.balance import TRAINED_STEPPING
 from sarah.errors import ConfigurationError
 from sarah.robot.description import describe_robot
@@ -23,7 +21,6 @@ from sarah.robot.reading import GRAVITY, Side
 from sarah.simulation import engines
 from sarah.simulation.build import simulator_of
 from sarah.simulation.engines import is_installed
-from sarah.simulation.physics import Physics
 from sarah.simulation.randomisation import NOMINAL
 
 pytestmark = pytest.mark.skipif(not is_installed("mujoco"), reason="needs mujoco")
@@ -48,7 +45,7 @@ def test_robot_steps_as_well_in_mujoco_as_in_pybullet() -> None:
 )
 def test_mujoco_takes_at_least_500_steps_a_second(asked: Physics, taken: Physics) -> None:
     results = [
-        simulate(EpisodeSpec(PAPER_STEPPING, 1, config=dataclasses.replace(SHORT, physics=physics)))
+        simulate(EpisodeSpec(PAPER_STEPPING, 1, config=replace(SHORT, physics=physics)))
         for physics in (asked, taken, Physics(1000))
     ]
     assert results[0] == results[1] != results[2]

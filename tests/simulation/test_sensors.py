@@ -12,7 +12,7 @@ from sarah.robot.reading import GRAVITY, SensorReading
 from sarah.simulation.physics import PHYSICS
 from sarah.simulation.randomisation import SensorConditions
 from sarah.simulation.sensors import ImperfectSensors
-from sarah.simulation.simulator import TorsoState, rotate_to_body, specific_force
+from sarah.simulation.simulator import rotate_to_body
 
 DT = 0.01
 JOINTS = (0.01, 0.02, 0.03, 0.04, 0.05, 0.06)
@@ -25,7 +25,6 @@ DEVIATIONS = np.array([0.2] * 3 + [0.02] * 3 + [3.0] * 4)
 
 
 def sensors(**settings: Any) -> ImperfectSensors:
-    """Sensors that are perfect but for some settings."""
     return ImperfectSensors(SensorConditions(**settings), DT)
 
 
@@ -96,7 +95,6 @@ def test_inertial_signals_follow_a_step_at_their_bandwidth(bandwidth: float) -> 
 
 
 def test_noise_is_that_of_numpys_generator_with_the_seed() -> None:
-    """White, with its standard deviation, also after it has been drawn anew."""
     noisy = sensors(**NOISE, seed=7)
     drawn = np.random.default_rng(7).standard_normal((1500, 10)) * DEVIATIONS
     for noise in drawn:
@@ -117,16 +115,6 @@ def test_unloaded_pads_read_no_negative_load() -> None:
     pads = np.array([noisy(STILL._replace(pressures=(0.0,) * 4)).pressures for _ in range(20_000)])
     assert pads.min() == 0.0 and (pads == 0.0).mean(axis=0) == pytest.approx([0.5] * 4, abs=0.02)
     assert pads.mean(axis=0) == pytest.approx([3.0 / math.sqrt(2.0 * math.pi)] * 4, rel=0.04)
-
-
-@pytest.mark.parametrize("axis", [0, 1, 2])
-def test_accelerometer_reads_the_speed_gained_and_gravity(axis: int) -> None:
-    before = (0.1, -0.2, 0.05)
-    x, y, z = (speed + 0.03 * (index == axis) for index, speed in enumerate(before))
-    torso = TorsoState((0.0, 0.0, 0.84), (0.0, 0.0, 0.0, 1.0), (x, y, z), (0.0, 0.0, 0.0))
-    expected = [0.0, 0.0, GRAVITY]
-    expected[axis] += 3.0
-    assert specific_force(torso, before, DT) == pytest.approx(expected)
 
 
 def test_accelerometer_reads_a_push_on_every_axis(lab: Laboratory, build: BuildSimulation) -> None:

@@ -1,4 +1,4 @@
-"""Slopes: what is drawn of them, and what they do to a robot in each engine; and how it stands on level ground."""
+"""Slopes, and how a robot stands on them and on level ground; settings of physics; what a seed draws of the robot."""
 
 import math
 from dataclasses import replace
@@ -8,58 +8,54 @@ import pytest
 from laboratory import BuildSimulation, Laboratory, advance
 
 from sarah.robot.reading import GRAVITY
+from sarah.robot.scale import Scale
 from sarah.scenery.ground import LEVEL
-from sarah.simulation.physics import PHYSICS
-from sarah.simulation.randomisation import Conditions, Randomisation, draw_conditions
+from sarah.simulation.physics import PHYSICS, Physics, PyBulletPhysics, physics_for
+from sarah.simulation.randomisation import NOMINAL, Conditions, Randomisation, draw_conditions
 from sarah.simulation.simulator import Simulator
 from sarah.simulation.terrain import Terrain, draw_ground
 
 SECOND = PHYSICS["standard"].control_rate
-RIGHT, FORWARD = 0.0, 90.0
 
 
 def slope(degrees: float, uphill: float) -> Terrain:
     return Terrain((degrees, degrees), (uphill, uphill))
 
 
-@pytest.fixture
-def build_on(build: BuildSimulation) -> BuildSimulation:
-    """Function that builds a robot on a slope, and lets it stand there for some seconds."""
-
-    def build_one(terrain: Terrain, seconds: float = 0.0) -> Simulator:
-        simulation = build(Conditions(friction=0.9, ground=draw_ground(terrain, 0)))
-        advance(simulation, round(seconds * SECOND))
-        return simulation
-
-    return build_one
+def on(terrain: Terrain) -> Conditions:
+    return Conditions(friction=0.9, ground=draw_ground(terrain, 0))
 
 
-@pytest.mark.parametrize("uphill", [RIGHT, FORWARD])
-def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(build_on: BuildSimulation, uphill: float) -> None:
-    angle, (x, y) = math.radians(5.0), (1.0, 0.0) if uphill == RIGHT else (0.0, 1.0)
-    simulation = build_on(slope(5.0, uphill), seconds=1.0)
-    readings = []
+@pytest.mark.parametrize(("uphill", "x", "y"), [(0.0, 1.0, 0.0), (90.0, 0.0, 1.0)])
+def test_standing_robot_feels_gravity_as_if_it_leaned_downhill(
+    build: BuildSimulation, uphill: float, x: float, y: float
+) -> None:
+    simulation, readings = build(on(slope(5.0, uphill))), []
+    advance(simulation, SECOND)
     for _ in range(SECOND):
         simulation.advance()
         readings.append(simulation.read().acceleration)
-    g_sin, g_cos = GRAVITY * math.sin(angle), GRAVITY * math.cos(angle)
+    g_sin, g_cos = GRAVITY * math.sin(math.radians(5.0)), GRAVITY * math.cos(math.radians(5.0))
     assert np.mean(readings, axis=0) == pytest.approx((x * g_sin, y * g_sin, g_cos), abs=0.01)
 
 
-def test_a_falling_robot_has_gravitys_pull_and_feels_nothing(lab: Laboratory, build_on: BuildSimulation) -> None:
-    terrain = slope(10.0, 30.0)
-    simulation = build_on(terrain)
+def test_a_falling_robot_has_gravitys_pull_and_feels_nothing(lab: Laboratory, build: BuildSimulation) -> None:
+    conditions = on(slope(10.0, 30.0))
+    simulation = build(conditions)
     lab.place(simulation)
     advance(simulation, SECOND // 10)
-    fallen = np.array(draw_ground(terrain, 0).gravity) * 0.1
-    assert simulation.torso_state().velocity == pytest.approx(tuple(fallen), abs=1e-6)
+    assert simulation.torso_state().velocity == pytest.approx(0.1 * np.array(conditions.ground.gravity), abs=1e-6)
     assert simulation.read().acceleration == pytest.approx((0.0, 0.0, 0.0), abs=1e-6)
 
 
-def test_one_simulation_leaves_the_next_on_its_own_slope(build_on: BuildSimulation) -> None:
-    before = build_on(Terrain(), seconds=0.2).read()
-    build_on(slope(20.0, RIGHT), seconds=0.2).close()
-    assert build_on(Terrain(), seconds=0.2).read() == before
+def test_one_simulation_leaves_the_next_on_its_own_slope(build: BuildSimulation) -> None:
+    readings = []
+    for degrees in (0.0, 20.0, 0.0):
+        simulation = build(on(slope(degrees, 0.0)))
+        advance(simulation, SECOND // 5)
+        readings.append(simulation.read())
+        simulation.close()
+    assert readings[0] == readings[2] != readings[1]
 
 
 @pytest.mark.parametrize(("degrees", "uphill"), [(12.0, 0.0), (12.0, 90.0), (30.0, 215.0)])
@@ -86,9 +82,6 @@ def test_slopes_cover_their_ranges() -> None:
 def test_level_ground_is_exactly_level() -> None:
     flat = Terrain(), Terrain(direction_degrees=(200.0, 210.0)), Terrain(cell=(0.03, 0.03))
     assert all(draw_ground(terrain, seed) == LEVEL for terrain in flat for seed in range(2))
-
-
-SECOND = PHYSICS["standard"].control_rate
 
 
 def test_a_standing_robot_keeps_its_place_and_loads_its_pads(build: BuildSimulation) -> None:
@@ -125,3 +118,59 @@ def test_a_robot_of_other_masses_and_friction_does_not_creep(build: BuildSimulat
     for degrees in (45.0, 270.0):
         ground = draw_ground(Terrain((8.0, 8.0), (degrees, degrees)), 0)
         assert drift(build(replace(drawn, ground=ground)), 4) < 0.003
+
+
+@pytest.mark.parametrize("rate", [100, 250])
+@pytest.mark.parametrize("name", PHYSICS)
+def test_named_settings_go_to_mujoco_and_come_back(name: str, rate: int) -> None:
+    named = PHYSICS[name].at_control_rate(rate)
+    in_mujoco = physics_for("mujoco", named, Scale())
+    assert in_mujoco == Physics(named.rate, named.solver_iterations, rate) and type(in_mujoco) is Physics
+    assert physics_for("mujoco", in_mujoco, Scale()) is in_mujoco
+    assert physics_for("pybullet", in_mujoco, Scale()) == named
+    assert PHYSICS["standard"].added_plate_inertia > PHYSICS["reference"].added_plate_inertia == 0.0
+
+
+def test_nameless_settings_get_the_standard_inertia_in_pybullet() -> None:
+    taken = physics_for("pybullet", Physics(rate=400, solver_iterations=7, control_rate=200), Scale())
+    assert taken == PyBulletPhysics(400, 7, 200, added_plate_inertia=PHYSICS["standard"].added_plate_inertia)
+    own = PyBulletPhysics(400, 7, 200, added_plate_inertia=0.001)
+    assert physics_for("pybullet", own, Scale()) is own
+    assert physics_for("mujoco", own, Scale()) == Physics(400, 7, 200)
+
+
+@pytest.mark.parametrize("rate", [50, 150, 1000])
+def test_another_control_rate_keeps_at_least_the_rate(rate: int) -> None:
+    for physics in PHYSICS.values():
+        taken = physics.at_control_rate(rate)
+        assert taken.control_rate == rate and taken.control_dt == 1.0 / rate
+        assert physics.rate <= taken.rate < physics.rate + rate and taken.rate % rate == 0
+
+
+def test_everything_the_seed_draws_is_within_its_range() -> None:
+    for seed in range(200):
+        drawn = draw_conditions(Randomisation(), seed)
+        assert 0.7 <= drawn.friction <= 1.0 and 40.0 <= drawn.actuator_bandwidth <= 50.0
+        assert max(map(abs, drawn.mass_offset)) <= 0.010
+        assert all(0.95 <= factor <= 1.05 for factor in drawn.mass_factors.values())
+        assert len(set(drawn.mass_factors.values())) == len(drawn.mass_factors)
+    drawn, other = (draw_conditions(ranges, 5) for ranges in (Randomisation(), Randomisation(friction=(0.2, 0.3))))
+    assert 0.2 <= other.friction <= 0.3 and replace(other, friction=drawn.friction) == drawn
+
+
+def test_errors_of_sensors_fill_their_ranges_to_both_sides() -> None:
+    drawn = [draw_conditions(Randomisation(), seed).sensors for seed in range(400)]
+    for errors, largest in (
+        ([error for sensors in drawn for error in sensors.acceleration_bias], 0.1),
+        ([error for sensors in drawn for error in sensors.angular_rate_bias], 0.02),
+        ([gain - 1.0 for sensors in drawn for gain in sensors.pad_gains], 0.2),
+    ):
+        assert 0.95 * largest < max(errors) <= largest and -largest <= min(errors) < -0.95 * largest
+    angles = [math.degrees(math.hypot(*sensors.imu_tilt)) for sensors in drawn]
+    assert 1.9 < max(angles) <= 2.0 and sum(angles) / len(angles) == pytest.approx(1.0, abs=0.1)
+    for side in zip(*(sensors.imu_tilt for sensors in drawn), strict=True):
+        assert 150 < sum(tilt > 0 for tilt in side) < 250
+
+
+def test_randomisation_off_leaves_the_robot_as_designed() -> None:
+    assert [draw_conditions(Randomisation(enabled=False), seed) for seed in (1, 2)] == [NOMINAL, NOMINAL]

@@ -6,17 +6,19 @@ import locale
 import subprocess
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from operator import attrgetter
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, WAYS
 
+from sarah import STEPPING, EpisodeConfig, EpisodeSpec
+from sarah.envs.episode_vec_env import EpisodeVecEnv
 from sarah.episode.episode import Episode, simulate
-from sarah.episode.settings import EpisodeConfig
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import STEPPING
+from sarah.episode.workers import Workers
 from sarah.errors import SimulationError
 from sarah.robot.description import describe_robot
 from sarah.simulation.build import simulator_of
@@ -37,8 +39,18 @@ def spec(engine: str) -> EpisodeSpec:
     return EpisodeSpec(STEPPING.baseline, 3, STEPPING, short(engine))
 
 
+def disturbed(engine: str, disturb: Callable[[Any], object]) -> EpisodeSpec:
+    """An episode in which somebody does something to its simulator, after a tick."""
+
+    def reward(tick: Any, config: EpisodeConfig) -> float:
+        if tick.time < 1.015:
+            disturb(tick.simulator)
+        return 1.0
+
+    return replace(spec(engine), task=replace(STEPPING, reward=reward))
+
+
 def add_a_box(client: int) -> None:
-    """Put something where the robot stands."""
     box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=(0.2, 0.2, 0.2), physicsClientId=client)
     pybullet.createMultiBody(1.0, box, physicsClientId=client)
 
@@ -71,13 +83,15 @@ DISTURBANCES: dict[str, Callable[[int], object]] = {
 @NEEDS_PYBULLET
 @pytest.mark.parametrize("disturbance", DISTURBANCES)
 def test_what_others_do_to_a_pybullet_world_raises(disturbance: str) -> None:
-    def disturbing(tick: Any, config: EpisodeConfig) -> float:
-        if tick.time < 1.015:
-            DISTURBANCES[disturbance](tick.simulator.client)
-        return 1.0
-
     with pytest.raises(SimulationError, match=r"other code in this process has changed .*: it must leave client \d+"):
-        simulate(replace(spec("pybullet"), task=replace(STEPPING, reward=disturbing)))
+        simulate(disturbed("pybullet", lambda simulator: DISTURBANCES[disturbance](simulator.client)))
+
+
+@pytest.mark.parametrize("array", ["data.qpos", "model.body_mass"])
+def test_what_others_do_to_a_mujoco_world_raises(array: str) -> None:
+    pytest.importorskip("mujoco")
+    with pytest.raises(SimulationError, match="other code in this process has changed the robot's model in MuJoCo"):
+        simulate(disturbed("mujoco", lambda simulator: np.copyto(attrgetter(array)(simulator)[:2], 7.0)))
 
 
 @NEEDS_PYBULLET
@@ -114,13 +128,9 @@ def test_no_robot_is_where_code_works_that_names_no_client() -> None:
 def test_bullets_contact_margin_is_its_own_in_other_worlds() -> None:
     other = pybullet.connect(pybullet.DIRECT)
 
-    def disturbing(tick: Any, config: EpisodeConfig) -> float:
-        pybullet.setPhysicsEngineParameter(contactBreakingThreshold=0.05, physicsClientId=other)
-        return 1.0
-
     alone = simulate(spec("pybullet"))
-    disturbed = simulate(replace(spec("pybullet"), task=replace(STEPPING, reward=disturbing)))
-    assert disturbed.final_position == alone.final_position
+    margin = partial(pybullet.setPhysicsEngineParameter, contactBreakingThreshold=0.05, physicsClientId=other)
+    assert simulate(disturbed("pybullet", lambda _: margin())).final_position == alone.final_position
     plane = pybullet.createCollisionShape(pybullet.GEOM_PLANE, physicsClientId=other)
     box = pybullet.createCollisionShape(pybullet.GEOM_BOX, halfExtents=(0.1,) * 3, physicsClientId=other)
     pybullet.createMultiBody(0.0, plane, physicsClientId=other)
@@ -148,16 +158,17 @@ def test_a_locale_with_decimal_commas_changes_no_episode(tmp_path: Path, monkeyp
 
 def test_a_robot_is_compared_with_its_description(engine: str) -> None:
     robot = describe_robot()
-    heavier = {**robot.masses, "left_shank": 1.001 * robot.masses["left_shank"]}
-    narrower = {**robot.limits, "right_hip_flexion": (-0.1, 0.1)}
-    with pytest.raises(SimulationError, match=r"loaded another robot .*: mass of left_shank is"):
-        simulator_of(engine)(replace(robot, masses=heavier), COARSE_PHYSICS, NOMINAL)
-    with pytest.raises(SimulationError, match="lower limit of right_hip_flexion is"):
-        simulator_of(engine)(replace(robot, limits=narrower), COARSE_PHYSICS, NOMINAL)
-    with pytest.raises(SimulationError, match="number of joints is 9 there, and should be 10"):
-        check_loaded(engine, robot, NOMINAL, robot.masses, dict(list(robot.limits.items())[1:]), (0.0, 0.0, -9.81))
-    with pytest.raises(SimulationError, match=r"gravity along z is 0\.0"):
-        check_loaded(engine, robot, NOMINAL, robot.masses, robot.limits, (0.0, 0.0, 0.0))
+    heavier = replace(robot, masses={**robot.masses, "left_shank": 1.001 * robot.masses["left_shank"]})
+    narrower = replace(robot, limits={**robot.limits, "right_hip_flexion": (-0.1, 0.1)})
+    load, check = simulator_of(engine), partial(check_loaded, engine, robot, NOMINAL, robot.masses)
+    for attempt, words in (
+        (lambda: load(heavier, COARSE_PHYSICS, NOMINAL), r"loaded another robot .*: mass of left_shank is"),
+        (lambda: load(narrower, COARSE_PHYSICS, NOMINAL), "lower limit of right_hip_flexion is"),
+        (lambda: check(dict([*robot.limits.items()][1:]), (0.0, 0.0, -9.81)), "number of joints is 9 there, and sh"),
+        (lambda: check(robot.limits, (0.0, 0.0, 0.0)), r"gravity along z is 0\.0"),
+    ):
+        with pytest.raises(SimulationError, match=words):
+            attempt()
 
 
 def test_a_process_that_rounds_upward_is_refused(engine: str) -> None:
@@ -177,29 +188,13 @@ def test_a_process_that_rounds_upward_is_refused(engine: str) -> None:
 def test_others_callbacks_of_mujoco_are_refused(when: str) -> None:
     mujoco = pytest.importorskip("mujoco")
 
-    def setting(tick: Any, config: EpisodeConfig) -> float:
-        mujoco.set_mjcb_passive(lambda model, data: None)
-        return 1.0
-
     if when == "before":
-        setting(None, short("mujoco"))
+        mujoco.set_mjcb_passive(lambda model, data: None)
     try:
         with pytest.raises(SimulationError, match=r"mjcb_passive, .*: remove it with mujoco.set_mjcb_passive\(None\)"):
-            simulate(replace(spec("mujoco"), task=replace(STEPPING, reward=setting)))
+            simulate(disturbed("mujoco", lambda _: mujoco.set_mjcb_passive(lambda model, data: None)))
     finally:
         mujoco.set_mjcb_passive(None)
-
-
-@pytest.mark.parametrize("disturbance", ["data.qpos", "model.body_mass"])
-def test_what_others_do_to_a_mujoco_world_raises(disturbance: str) -> None:
-    pytest.importorskip("mujoco")
-
-    def disturbing(tick: Any, config: EpisodeConfig) -> float:
-        attrgetter(disturbance)(tick.simulator)[:2] += 0.1
-        return 1.0
-
-    with pytest.raises(SimulationError, match="other code in this process has changed the robot's model in MuJoCo"):
-        simulate(replace(spec("mujoco"), task=replace(STEPPING, reward=disturbing)))
 
 
 def test_mujocos_warnings_of_other_models_still_come() -> None:
@@ -220,8 +215,9 @@ def test_mujocos_warnings_of_other_models_still_come() -> None:
 
 def test_what_holds_a_world_cannot_be_copied(engine: str) -> None:
     episode = Episode(short(engine), 0)
-    renderer = [Renderer(describe_robot())] if engine == "pybullet" else []
-    for holder in (episode, episode.robot, episode.robot.simulation, *renderer):
+    others = [Renderer(describe_robot())] if engine == "pybullet" else []
+    in_flight = EpisodeVecEnv("stepping", short(engine), 2, 1, Workers())
+    for holder in (episode, episode.robot, episode.robot.simulation, in_flight, *others):
         for way in WAYS.values():
             with pytest.raises(SimulationError, match=f"^{type(holder).__name__} holds simulated worlds"):
                 way(holder)

@@ -17,7 +17,7 @@ from sarah.viewer.server import serving
 pytest.importorskip("zenoh")
 
 
-def test_the_scene_follows_a_robot_that_listens_until_it_has_gone() -> None:
+def test_the_scene_follows_a_robot_until_it_has_gone() -> None:
     endpoint = Endpoint(f"tcp/127.0.0.1:{free_port()}")
     with serving("127.0.0.1", 8080) as server:
         live = LiveRobot(server, PARAMETER_SETS["balance"].spec)

@@ -1,26 +1,22 @@
 """The scene of the page, as far as it can be seen without a browser."""
 
-import dataclasses
 import io
 import math
 import time
 from collections.abc import Iterator
-from typing import Any
+from dataclasses import replace
+from typing import Any, cast
 
 import numpy as np
 import pytest
 import yourdfpy
 from laboratory import COARSE_PHYSICS
 
-from sarah.episode.episode import simulate
-from sarah.episode.push import Push
-from sarah.episode.spec import EpisodeSpec
-from sarah.episode.tasks import BalanceConfig
+from sarah import BalanceConfig, EpisodeSpec, Push, Terrain, simulate
 from sarah.episode.trace import Trace
 from sarah.robot.description import describe_robot
 from sarah.runs.run_episodes import episode_of_parameters
 from sarah.scenery.camera import View
-from sarah.simulation.terrain import Terrain
 from sarah.viewer.page import Page
 from sarah.viewer.plots import CHARTS, Plots
 from sarah.viewer.scenario import Scenario
@@ -28,14 +24,12 @@ from sarah.viewer.scene import FIRST_CAMERA, WINDOW, RobotScene, arrow, channels
 from sarah.viewer.server import serving
 
 SPEC = EpisodeSpec((0.0,) * 4, 0, "balance", BalanceConfig(time_limit=1.5, push=Push(0.0), physics=COARSE_PHYSICS))
-SHORT_LEGS = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, dimensions={"thigh_length": 0.2}))
+SHORT_LEGS = replace(SPEC, config=replace(SPEC.config, dimensions={"thigh_length": 0.2}))
 
 
 @pytest.fixture(scope="module")
 def trace() -> Trace:
-    found = simulate(SPEC, record_trace=True).trace
-    assert found is not None
-    return found
+    return cast(Trace, simulate(SPEC, record_trace=True).trace)
 
 
 @pytest.fixture(scope="module")
@@ -47,7 +41,7 @@ def scene() -> Iterator[RobotScene]:
 def test_every_push_has_its_arrow_and_words_while_it_acts(scene: RobotScene, trace: Trace) -> None:
     forces = np.zeros((len(trace), 3))
     forces[5:8], forces[30:] = (500.0, 0.0, 0.0), (0.0, -5.0, 0.0)
-    scene.load(dataclasses.replace(trace, push=forces), SPEC)
+    scene.load(replace(trace, push=forces), SPEC)
     shown = []
     for tick in (0, 6, 49):
         scene.show(tick)
@@ -59,7 +53,7 @@ def test_every_push_has_its_arrow_and_words_while_it_acts(scene: RobotScene, tra
 
 
 def test_robot_and_rough_ground_leave_with_their_episode(scene: RobotScene, trace: Trace) -> None:
-    rough = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, terrain=Terrain(roughness=(0.02, 0.02))))
+    rough = replace(SPEC, config=replace(SPEC.config, terrain=Terrain(roughness=(0.02, 0.02))))
     scene.load(trace, rough)
     bumps, low = scene.bumps, scene.floor.position[2]
     assert bumps is not None and np.reshape(bumps.vertices, (-1, 3))[:, 2].min() == pytest.approx(low) and low < -0.01
@@ -72,7 +66,7 @@ def test_robot_and_rough_ground_leave_with_their_episode(scene: RobotScene, trac
 
 
 def test_words_are_shown_and_a_fall_while_standing_has_no_stance(scene: RobotScene, trace: Trace) -> None:
-    scene.load(dataclasses.replace(trace, phase=np.full(len(trace), "stand")), SPEC)
+    scene.load(replace(trace, phase=np.full(len(trace), "stand")), SPEC)
     scene.tell(["payload 5", "terrain.friction_left 0.2"])
     scene.show(0)
     assert not scene.stance.visible
@@ -108,13 +102,14 @@ def test_robot_words_and_pushes_are_in_the_first_view(dimensions: dict[str, floa
         assert camera._replace(distance=FIRST_CAMERA.distance) == FIRST_CAMERA
 
 
-def test_an_arrow_is_as_long_as_its_force_is_strong_up_to_its_limit() -> None:
+def test_an_arrow_is_as_long_as_its_force_up_to_its_limit() -> None:
     lengths = [float(np.ptp(arrow(np.array((newtons, 0.0, 0.0)))[:, 0])) for newtons in (50.0, 100.0, 500.0, 1000.0)]
     assert lengths[1] == pytest.approx(2 * lengths[0]) and lengths[2] == lengths[3] > lengths[1]
+    assert channels("#0172B3") == (1, 0x72, 0xB3)
 
 
 def test_plots_show_their_window_of_time_and_its_values(trace: Trace) -> None:
-    quick = dataclasses.replace(SPEC, config=dataclasses.replace(SPEC.config, step_frequency=2.0))
+    quick = replace(SPEC, config=replace(SPEC.config, step_frequency=2.0))
     with serving("127.0.0.1", 8080) as server:
         plots = Plots(server.gui)
         plots.load(trace, Scenario.of(quick))
@@ -131,14 +126,10 @@ def test_plots_show_their_window_of_time_and_its_values(trace: Trace) -> None:
     assert set(shown.data[-1]) == {2.0}  # the frequency that is best for the reward
 
 
-def test_colours_are_red_green_and_blue() -> None:
-    assert channels("#0172B3") == (1, 0x72, 0xB3)
-
-
 def test_nothing_is_played_before_somebody_looks() -> None:
     episode = episode_of_parameters((0.4, 1.3, 0.1, 1.0, 1.0))
-    short = dataclasses.replace(episode.spec.config, time_limit=3.0, physics=COARSE_PHYSICS)
-    episode = episode.of(dataclasses.replace(episode.spec, config=short))
+    short = replace(episode.spec.config, time_limit=3.0, physics=COARSE_PHYSICS)
+    episode = episode.of(replace(episode.spec, config=short))
     with serving("127.0.0.1", 8080) as server:
         page = Page(server, [episode], episode)
         deadline = time.monotonic() + 60.0
