@@ -1,6 +1,7 @@
 """The hip law against hand-made readings: which way the hips go, how far and how fast."""
 
 import math
+from dataclasses import astuple
 from itertools import pairwise
 from typing import Any
 
@@ -10,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from sarah import ControllerConstants
-from sarah.control.hip_law import BalanceParameters, HipLaw
+from sarah.control.hip_law import LOCKED_HIPS, BalanceParameters, HipLaw
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import PatternGenerator, SteppingParameters
 from sarah.robot.reading import SensorReading, Side
@@ -48,6 +49,7 @@ DEAD_BAND, TIPS = 0.03, 0.2
 """A fall below which the flexion does not react, in rad; and a rate about y with which a robot leans by 0.25 rad in the
 end: by 0.2 rad that it has turned, and by 0.2 / 4 rad that it soon will."""
 LEFT, RIGHT = Side.LEFT, Side.RIGHT
+LOCKED = dict(zip(("v1", "v2", "v3", "v4"), astuple(LOCKED_HIPS), strict=True))
 STEADY: dict[str, tuple[dict[str, float], dict[str, Any], dict[str, Any]]] = {
     "abduction is V1's and V2's": ({"v1": 1.5, "v2": 0.4}, {"lateral": 2.0}, {"abduction": -0.05 * (1.5 * 2.0 + 0.4)}),
     "a torso has pitched": ({}, {"rate_x": 0.4}, {"pitch": 0.4}),
@@ -59,7 +61,7 @@ STEADY: dict[str, tuple[dict[str, float], dict[str, Any], dict[str, Any]]] = {
         {"fall": 0.25 - DEAD_BAND},
     ),
     "V4 flexes both alike": ({"v4": 1.5}, {}, {"flexion": {LEFT: 0.03, RIGHT: 0.03}}),
-    "locked hips": ({}, {"lateral": 8.0, "rate_x": 3.0}, {"abduction": 0.0, "flexion": {LEFT: 0.0, RIGHT: 0.0}}),
+    "locked hips": (LOCKED, {"lateral": 8.0, "rate_x": 3.0}, {"abduction": 0.0, "flexion": {LEFT: 0.0, RIGHT: 0.0}}),
     **{
         f"tips to the {side}, V1 = {v1}": ({"v1": v1}, {f"{side.other}": 0.0, "rate_y": side.value * TIPS}, spread)
         for v1 in (0.25, 0.5)
