@@ -61,7 +61,11 @@ STEADY: dict[str, tuple[dict[str, float], dict[str, Any], dict[str, Any]]] = {
         {"fall": 0.25 - DEAD_BAND},
     ),
     "V4 flexes both alike": ({"v4": 1.5}, {}, {"flexion": {LEFT: 0.03, RIGHT: 0.03}}),
-    "locked hips": (LOCKED, {"lateral": 8.0, "rate_x": 3.0}, {"abduction": 0.0, "flexion": {LEFT: 0.0, RIGHT: 0.0}}),
+    "locked hips": (
+        LOCKED,
+        {"lateral": 8.0, "rate_x": 3.0, "left": 0.0},
+        {"abduction": 0.0, "flexion": {LEFT: 0.0, RIGHT: 0.0}},
+    ),
     **{
         f"tips to the {side}, V1 = {v1}": ({"v1": v1}, {f"{side.other}": 0.0, "rate_y": side.value * TIPS}, spread)
         for v1 in (0.25, 0.5)
