@@ -184,10 +184,10 @@ class _Known:
         return [one for one, rewards in self._observed.items() if len(rewards) >= SETTLED]
 
     def _present(self) -> float:
-        """Reward of the best set so far: as it was observed, and of the reference also as it is believed."""
-        reference = self._beliefs()[self._reference] if self._is_known else None
-        expected = self.reference_reward if reference is None else reference.reward
-        return max([expected, *(fmean(self._observed[one]) for one in self._settled())])
+        """Reward of the best set so far: as it was observed, and of the reference as it is believed if that is more."""
+        believed_of_reference = [self._beliefs()[self._reference].reward] if self._is_known else []
+        observed = [fmean(self._observed[one]) for one in (self._reference, *self._settled())]
+        return max(observed + believed_of_reference)
 
     def _beliefs(self) -> dict[Parameters, Belief]:
         return {one.parameters: one for one in believed(self._recognition, self._place, self._observed)}
