@@ -153,7 +153,7 @@ def test_nothing_is_pushed_where_the_shipped_ones_are_good() -> None:
     assert robot.mean_reward() > 0.92
 
 
-def test_nothing_is_pushed_where_the_shipped_ones_are_observed_to_be_good() -> None:
+def test_after_one_bad_set_nothing_is_pushed_where_the_shipped_ones_are_good() -> None:
     """Also where robots that feel like this one did badly with them."""
     random = np.random.default_rng(1)
 
@@ -163,7 +163,7 @@ def test_nothing_is_pushed_where_the_shipped_ones_are_observed_to_be_good() -> N
 
     robot = Alike(0.0)
     operate_recognised(robot, SHIPPED, 0, NEAREST)
-    assert not {top(-1.0), top(1.0)} & {window.parameters for window in robot.seen}
+    assert sum(window.parameters in {top(-1.0), top(1.0)} for window in robot.seen) <= 1
 
 
 @pytest.mark.parametrize("recognition", [NEAREST, Recognition()], ids=["of logs", "empty"])
