@@ -192,7 +192,8 @@ def choices(rows: DataFrame) -> str:
         for learner, other in (*((name, BEST) for name in RECOGNISE), (SHORT[2], SHORT[1]))
     ]
     caption = (
-        "Differences in the score of the first three minutes from another learner, with 95 % intervals over robots."
+        "Differences in the score of the first three minutes from another learner, with 95 % intervals over robots, or "
+        "over the sessions of a single robot, as between hard and easy."
     )
     columns = ["robots", "learner", "other", "mean", "low", "high", "sessions"]
     return table(DataFrame(found), columns, caption, mean="+.3f", low="+.3f", high="+.3f")

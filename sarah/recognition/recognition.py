@@ -5,7 +5,6 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
@@ -30,6 +29,8 @@ LARGEST_FILE = 2**20
 """Largest size of a file that is read, in bytes; the shipped one has some 20,000."""
 LARGEST_NUMBER = 1e6
 """Largest number in a recognition, by amount."""
+LARGEST_REWARD = 2.0
+"""Largest expected reward, by amount: 1 is the best that a robot can do, and a process may overshoot."""
 MOST = 1000
 """Largest number of kinds, of sets, of rows, and of a layer's units."""
 LONGEST_NAME = 200
@@ -150,16 +151,17 @@ class Recognition:
         _check("centre", (self.centre,), (1, len(FEATURES)))
         _check("whitening", self.whitening, (coordinates, len(FEATURES)))
         _check("places", self.places, (kinds, coordinates))
-        _check("rewards", self.rewards, (sets, kinds))
-        _check("deviations", self.deviations, (sets, kinds), lowest=0.0)
+        _check("rewards", self.rewards, (sets, kinds), -LARGEST_REWARD, LARGEST_REWARD)
+        _check("deviations", self.deviations, (sets, kinds), low=0.0)
         for index, row in enumerate(self.rows):
             _check(f"rows.{index}", (row,), (1, len(BOX.names) + 2))
+            _check(f"rows.{index}.{len(row) - 1}", (row[-1:],), (1, 1), -LARGEST_REWARD, LARGEST_REWARD)
             check_whole(f"rows.{index}.0", row[0] if row[0] % 1.0 else int(row[0]), 0, len(self.kinds) - 1)
             BOX.checked(row[1:-1], f"rows.{index}")
         width = coordinates
         for index, layer in enumerate(self.layers):
             is_last = index == len(self.layers) - 1
-            width_after = kinds if is_last else min(len(layer.biases), MOST)
+            width_after = kinds if is_last else max(1, min(len(layer.biases), MOST))
             _check(f"layers.{index}.weights", layer.weights, (width_after, width))
             _check(f"layers.{index}.biases", (layer.biases,), (1, width_after))
             width = width_after
@@ -200,14 +202,19 @@ def _refuse_constant(name: str) -> NoReturn:
     raise ValueError(f"{name} is no number")
 
 
-def _check(name: str, matrix: Sequence[Sequence[float]], shape: tuple[int, int], lowest: float = -math.inf) -> None:
+def _check(
+    name: str,
+    matrix: Sequence[Sequence[float]],
+    shape: tuple[int, int],
+    low: float = -LARGEST_NUMBER,
+    high: float = LARGEST_NUMBER,
+) -> None:
     """Refuse a matrix of another shape, and numbers that are too large or none."""
     if len(matrix) != shape[0] or any(len(row) != shape[1] for row in matrix):
         raise ConfigurationError(f"{name} must be {shape[0]} times {shape[1]} numbers")
-    low = max(lowest, -LARGEST_NUMBER)
     for value in (value for row in matrix for value in row):
-        if not low <= value <= LARGEST_NUMBER:
-            raise ConfigurationError(f"{name} must be numbers from {low:g} to {LARGEST_NUMBER:g}, not {value!r}")
+        if not low <= value <= high:
+            raise ConfigurationError(f"{name} must be numbers from {low:g} to {high:g}, not {value!r}")
 
 
 def _differences(here: Conditions, there: Conditions) -> list[tuple[str, Any, Any]]:

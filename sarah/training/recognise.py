@@ -184,9 +184,13 @@ class _Known:
         return [one for one, rewards in self._observed.items() if len(rewards) >= SETTLED]
 
     def _present(self) -> float:
-        """Reward of the best set so far: as it was observed, and of the reference also as it is believed."""
-        reference = self._beliefs()[self._reference] if self._is_known else None
-        expected = self.reference_reward if reference is None else reference.reward
+        """Reward of the best set so far: as it was observed, and of the reference as it is believed.
+
+        One window may be chance. But once a set that was pushed turned out well below the reference, belief was wrong.
+        """
+        worst = min(fmean(rewards) for rewards in self._observed.values())
+        is_believed = self._is_known and worst >= self.reference_reward - WELL_BELOW
+        expected = self._beliefs()[self._reference].reward if is_believed else self.reference_reward
         return max([expected, *(fmean(self._observed[one]) for one in self._settled())])
 
     def _beliefs(self) -> dict[Parameters, Belief]:

@@ -7,6 +7,7 @@ import pytest
 from known_robots import LOGS
 
 from sarah.errors import ConfigurationError
+from sarah.operation.settings import SHIPPED
 from sarah.operation.window import FELT
 from sarah.recognition.learning import learn
 from sarah.recognition.recognition import Recognition, read_recognition, shipped_recognition
@@ -25,6 +26,10 @@ def test_the_shipped_one_is_small_and_knows_robots() -> None:
     assert len(shipped_recognition().kinds) >= 20 and len(shipped_recognition().text()) < 100_000
 
 
+ONE_KIND = f'{{"kinds": ["a"], "places": [[]], "sets": [{list(SHIPPED)}], "rewards": [[REWARD]], "deviations": [[0]]}}'
+EMPTY_LAYER = '{"weights": [], "biases": []}'
+
+
 @pytest.mark.parametrize(
     ("text", "reason"),
     [
@@ -40,7 +45,10 @@ def test_the_shipped_one_is_small_and_knows_robots() -> None:
         ('{"places": [[1]]}', "places must be 0 times 0 numbers"),
         ('{"centre": ["__import__"]}', "must be a number"),
         ('{"rows": [[7, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]]}', "rows.0.0 must be between"),
+        (ONE_KIND.replace("REWARD", "1e6"), "rewards must be numbers from -2 to 2, not 1000000.0"),
+        ('{"rows": [[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1e6]]}', "rows.0.10 must be numbers from -2 to 2"),
         ('{"layers": [{"weights": [[1]], "biases": [0]}]}', "layers.0.weights must be 0 times 0 numbers"),
+        ('{"layers": [' + f"{EMPTY_LAYER}, {EMPTY_LAYER}" + "]}", "layers.0.weights must be 1 times 0 numbers"),
         ('{"conditions": {"control_rate": -1}}', "conditions.control_rate must be between"),
     ],
 )

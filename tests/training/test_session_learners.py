@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from known_robots import LOGS, KnownRobot, top
+from known_robots import LOGS, KnownRobot, felt, top
 from operated import START, FormulaRobot
 
 from sarah.errors import ConfigurationError
@@ -151,6 +151,19 @@ def test_nothing_is_pushed_where_the_shipped_ones_are_good() -> None:
     operate_recognised(robot, SHIPPED, 0, NEAREST)
     assert not {top(-1.0), top(1.0)} & {window.parameters for window in robot.seen}
     assert robot.mean_reward() > 0.92
+
+
+def test_after_one_bad_set_nothing_is_pushed_where_the_shipped_ones_are_good() -> None:
+    """Also where robots that feel like this one did badly with them."""
+    random = np.random.default_rng(1)
+
+    class Alike(KnownRobot):
+        def run(self, parameters: Parameters) -> Window:
+            return dataclasses.replace(super().run(parameters), felt=felt(1.0, random))
+
+    robot = Alike(0.0)
+    operate_recognised(robot, SHIPPED, 0, NEAREST)
+    assert sum(window.parameters in {top(-1.0), top(1.0)} for window in robot.seen) <= 1
 
 
 @pytest.mark.parametrize("recognition", [NEAREST, Recognition()], ids=["of logs", "empty"])
