@@ -8,7 +8,7 @@ experiments.robot.learned_from_logs`` writes the recognition that the package sh
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
@@ -36,6 +36,7 @@ from experiments.robot.recognised import (
     compared,
     graded,
     late,
+    verdicts,
 )
 from experiments.robot.recognised import goals as all_goals
 from experiments.tables import NOTHING, shown, table, turned_table
@@ -205,23 +206,10 @@ def against_one_set(rows: DataFrame) -> str:
     names = ("hard robots", "robots between hard and easy", "easy robots", "robots of other kinds")
     groups = {name: rows[rows.grade == grade] for name, grade in zip(names, GRADES, strict=True)}
     others = {str(robot): its for robot, its in groups[names[-1]].groupby("robot", sort=False)}
-    sentences = [f"Against one set for all the recogniser is {_verdicts(groups)}."]
+    sentences = [f"Against one set for all the recogniser is {verdicts(groups)}."]
     if others:
-        sentences.append(f"Of the {len(others)} robots of other kinds, one by one, it is {_verdicts(others)}.")
+        sentences.append(f"Of the {len(others)} robots of other kinds, one by one, it is {verdicts(others)}.")
     return " ".join(sentences)
-
-
-def _verdicts(groups: Mapping[str, DataFrame]) -> str:
-    """What the intervals say of the first three minutes of some robots, against one set for all."""
-    found: dict[str, list[str]] = {}
-    for name, its in groups.items():
-        if len(its):
-            one = compared(its, "first_3_min", other=BEST)
-            verdict = (
-                "ahead" if one.low > 0.0 else "behind" if one.high < 0.0 else "neither (the interval includes zero)"
-            )
-            found.setdefault(verdict, []).append(name)
-    return "; ".join(f"{verdict} on {' and on '.join(names)}" for verdict, names in sorted(found.items()))
 
 
 def learners(rows: DataFrame) -> str:

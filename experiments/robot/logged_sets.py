@@ -98,8 +98,8 @@ def room(rows: DataFrame) -> str:
         f"On the {len(hard)} kinds where the shipped set scores below {HARD}, the best set of each scores "
         f"{shown(hard.max(axis=1).mean(), '.3f')}. This flatters it, because the window that is counted also chose it. "
         f"One set for all scores {shown(one_for_all.mean(), '.3f')}. A robot that begins with a window of the shipped "
-        f"set, and then runs the best one, is {most} ({' to '.join(of_most)}) ahead after {MINUTES:g} minutes. With the set that "
-        f"another robot of its kind had found best, the difference is {mean} ({' to '.join(of_mean)})."
+        f"set, and then runs the best one, is {most} ({' to '.join(of_most)}) ahead after {MINUTES:g} minutes. With "
+        f"the set that another robot of its kind had found best, the difference is {mean} ({' to '.join(of_mean)})."
     )
 
 

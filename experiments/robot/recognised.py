@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -126,3 +126,17 @@ def late(rows: DataFrame) -> Compared:
     :param rows: rows of some robots
     """
     return compared(rows, "from_8_min", other=CAREFUL)
+
+
+def verdicts(groups: Mapping[str, DataFrame]) -> str:
+    """What the intervals say of the first three minutes against one set for all, in words.
+
+    :param groups: rows of some robots by what they are called
+    """
+    found: dict[str, list[str]] = {}
+    for name, its in groups.items():
+        if len(its):
+            one = compared(its, "first_3_min", other=BEST)
+            word = "ahead" if one.low > 0.0 else "behind" if one.high < 0.0 else "neither (the interval includes zero)"
+            found.setdefault(word, []).append(name)
+    return "; ".join(f"{word} on {' and on '.join(names)}" for word, names in sorted(found.items()))
