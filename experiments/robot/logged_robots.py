@@ -1,7 +1,7 @@
 """What have robots felt and tried that differ from the simulated one?
 
 The rows are windows: ``sarah-train --offline results/logged_robots.csv`` learns from them. Robots that are never logged
-are kept for judging what was learned. Both lists were fixed before anything was trained.
+are kept for judging what was learned.
 """
 
 from __future__ import annotations
@@ -91,10 +91,10 @@ HELD_OUT = (
     Differing(load=5.0),
     Differing(slope=6.0),
 )
-"""Robots for judging, by a rule: half way between those of the logs, and a step beyond. ``as simulated`` is in both
-lists, with other seeds."""
+"""Robots for judging, by a rule: half way between those of the logs, and a step beyond. They were fixed before any log
+was made. ``as simulated`` is in both lists, with other seeds."""
 UNKNOWN = (Differing(servos=10.0, friction=0.25), Differing(load=25.0))
-"""Robots for judging of kinds that no log has."""
+"""Robots for judging of kinds that no log has, fixed before any robot for judging ran."""
 FIRST_LOGGED_SEED = 2000
 FIRST_HELD_OUT_SEED = 3000
 REACH = 0.25

@@ -1,9 +1,9 @@
-"""Comparisons of learners on robots that no log has, and the goals that were set before any of them ran."""
+"""Comparisons of learners on robots that no log has, and the goals."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -16,6 +16,8 @@ HARD, EASY = 0.85, 0.92
 """Mean score of the frozen parameters below which a robot is hard, and from which on it is easy."""
 KNOWN_KIND, OTHER_KIND, CHANGING = "known", "unknown", "changing"
 """Groups of robots: of kinds that the logs have, or are between; of other kinds; and those that change."""
+GRADES = ("hard", "between", "easy", "other kinds")
+"""Grades of robots that do not change."""
 
 
 class Compared(NamedTuple):
@@ -59,7 +61,8 @@ def graded(rows: DataFrame) -> DataFrame:
     rows = rows[rows.engine == "mujoco"]
     frozen = rows[rows.learner == FROZEN].groupby("robot").score.mean()
     rows = rows[rows.robot.isin(frozen.index)]
-    return rows.assign(grade=rows.group.mask(rows.group == KNOWN_KIND, rows.robot.map(frozen.map(_grade))))
+    others = rows.group.replace(OTHER_KIND, GRADES[-1])
+    return rows.assign(grade=others.mask(rows.group == KNOWN_KIND, rows.robot.map(frozen.map(_grade))))
 
 
 def _grade(score: float) -> str:
@@ -107,7 +110,7 @@ def goals(rows: DataFrame) -> Iterator[Goal]:
     of_each = {str(robot): late(its) for robot, its in staying.groupby("robot")}
     worst = min(of_each, key=lambda robot: (math.isnan(of_each[robot].high), of_each[robot].high))
     below = "; ".join(robot for robot, found in of_each.items() if found.high < 0.0) or "none"
-    yield Goal(f"… on no robot below it by more than the interval (below on {below})", 0.0, of_each[worst], "high")
+    yield Goal(f"… on the worst robot, by the upper end (below zero on {below})", 0.0, of_each[worst], "high")
     for robot, its in rows[rows.group == OTHER_KIND].groupby("robot", sort=False):
         yield Goal(f"{robot}, less frozen ones", -0.01, compared(its, "score", other=FROZEN))
         yield Goal(f"{robot}, less the careful learner", -0.02, compared(its, "score", other=CAREFUL))
@@ -123,3 +126,17 @@ def late(rows: DataFrame) -> Compared:
     :param rows: rows of some robots
     """
     return compared(rows, "from_8_min", other=CAREFUL)
+
+
+def verdicts(groups: Mapping[str, DataFrame]) -> str:
+    """What the intervals say of the first three minutes against one set for all, in words.
+
+    :param groups: rows of some robots by what they are called
+    """
+    found: dict[str, list[str]] = {}
+    for name, its in groups.items():
+        if len(its):
+            one = compared(its, "first_3_min", other=BEST)
+            word = "ahead" if one.low > 0.0 else "behind" if one.high < 0.0 else "neither (the interval includes zero)"
+            found.setdefault(word, []).append(name)
+    return "; ".join(f"{word} on {' and on '.join(names)}" for word, names in sorted(found.items()))

@@ -27,7 +27,7 @@ from experiments.robot.conditions import askew, biased
 from experiments.robot.first_training import settling
 from experiments.robot.hard_pushes import difference
 from experiments.robot.race import columns, curve_of, ranked
-from experiments.robot.recognised import CAREFUL, NEAREST, compared
+from experiments.robot.recognised import BEST, CAREFUL, NEAREST, compared, verdicts
 from experiments.tables import heading, shown, span, table, turned_table
 from sarah.agents import NAF
 from sarah.reports.race_entry import RaceCurve
@@ -285,3 +285,16 @@ def test_learners_are_compared_robot_by_robot() -> None:
     found = compared(rows, "score", other=CAREFUL)
     assert (found.mean, found.high, found.sessions) == (approx(0.2), approx(0.2 + 1.2706, abs=1e-4), 3)
     assert math.isnan(compared(rows[rows.robot == "b"], "score").low)
+
+
+def test_words_about_one_set_for_all_follow_the_intervals() -> None:
+    """Both sessions of a robot differ by nearly the same, up or down, or by opposite amounts."""
+    groups = {
+        name: DataFrame(
+            {"robot": "a", "seed": seed, "learner": learner, "first_3_min": 0.5 + sign * gain * (learner == NEAREST)}
+            for seed, gain in enumerate(gains)
+            for learner in (NEAREST, BEST)
+        )
+        for name, sign, gains in (("x", 1, (0.1, 0.1001)), ("y", -1, (0.1, 0.1001)), ("z", 1, (0.1, -0.1)))
+    }
+    assert verdicts(groups) == "ahead on x; behind on y; neither (the interval includes zero) on z"
