@@ -73,7 +73,7 @@ def _say(robots: Sequence[LoggedRobot], recognition: Recognition) -> None:
     for robot in robots:
         if robot.kind in left_out:
             continue
-        rewards, own = rewards_of([robot]), best_set(robot)
+        rewards, own = rewards_of([robot]), best_set(robot, recognition.reference)
         seen = [
             f"{fmean(rewards[one]):.2f}" if one in rewards else "" for one in (recognition.reference, one_for_all, own)
         ]

@@ -4,11 +4,12 @@ import dataclasses
 from pathlib import Path
 
 import pytest
-from known_robots import LOGS
+from known_robots import LOGS, top
 
 from sarah.errors import ConfigurationError
+from sarah.operation.settings import SHIPPED
 from sarah.operation.window import FELT
-from sarah.recognition.learning import learn
+from sarah.recognition.learning import best_set, learn
 from sarah.recognition.recognition import Recognition, read_recognition, shipped_recognition
 
 
@@ -23,6 +24,12 @@ def test_what_was_learned_is_read_back(kind: str, tmp_path: Path, monkeypatch: p
 
 def test_the_shipped_one_is_small_and_knows_robots() -> None:
     assert len(shipped_recognition().kinds) >= 20 and len(shipped_recognition().text()) < 100_000
+
+
+def test_sets_that_ran_once_are_known_where_only_the_reference_is_repeated() -> None:
+    short = [dataclasses.replace(robot, windows=robot.windows[:6]) for robot in LOGS]  # the reference, and three once
+    assert [best_set(robot) for robot in short[::2]] == [top(kind) for kind in (-1.0, 0.0, 1.0)]
+    assert set(learn(short).sets) == {SHIPPED, *(top(kind) for kind in (-1.0, 0.0, 1.0))}
 
 
 @pytest.mark.parametrize(
