@@ -170,7 +170,8 @@ def test_a_session_keeps_what_it_recognises_by(learned: Path) -> None:
     arguments = ("--learner", "recognise", "--from", "known", *COARSE, "--out", "mine")
     done("sarah-operate", *arguments, "--minutes", "0.1", cwd=learned.parent)
     (learned / "recognition.json").rename(learned / "moved.json")
-    done("sarah-operate", "--resume", "mine", "--minutes", "0.15", cwd=learned.parent)
+    resumed = done("sarah-operate", "--resume", "mine", "--minutes", "0.15", cwd=learned.parent)
+    assert "\nrecognised  unlike all 3 known kinds\nknown sets  none ran" in resumed.stdout
     (learned / "moved.json").rename(learned / "recognition.json")
     mine = SessionFolder.open(learned.parent / "mine")
     assert len(mine.windows()) == 2
