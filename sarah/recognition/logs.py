@@ -19,7 +19,15 @@ from sarah.logs.reading import Log
 from sarah.logs.topics import WINDOWS
 from sarah.operation.settings import BOX, OperationConfig
 from sarah.operation.window import FELT, Window
-from sarah.recognition.logged import LONGEST_ROBOT, LoggedRobot, check_names, logged_robots, logged_window, number_of
+from sarah.recognition.logged import (
+    LONGEST_ROBOT,
+    LoggedRobot,
+    LoggedWindow,
+    check_names,
+    logged_robots,
+    logged_window,
+    number_of,
+)
 from sarah.recognition.recognition import Conditions
 from sarah.robot.dimensions import check_dimensions, scale_of
 from sarah.robot.scale import Scale
@@ -41,7 +49,7 @@ SLACK = 0.1
 
 
 def read_logs(paths: Iterable[Path]) -> list[LoggedRobot]:
-    """Read logs, and put the windows of the same robot together.
+    """Read logs, and put the windows of the same robot together; those that a log before has, too, count once.
 
     :param paths: folders of sessions, MCAP files and tables
     :return: robots in the order of the logs
@@ -50,13 +58,19 @@ def read_logs(paths: Iterable[Path]) -> list[LoggedRobot]:
     """
     robots: dict[tuple[str, str], LoggedRobot] = {}
     first: Conditions | None = None
+    seen: set[LoggedWindow] = set()
     for path in paths:
+        read: set[LoggedWindow] = set()
         for robot in read_log(path):
             first = first or robot.conditions
             first.check(robot.conditions, str(path))
+            new = tuple(window for window in robot.windows if window not in seen)
             known = robots.get((robot.kind, robot.name))
-            windows = robot.windows if known is None else known.windows + robot.windows
-            robots[robot.kind, robot.name] = replace(robot, windows=windows)
+            if new:
+                windows = new if known is None else known.windows + new
+                robots[robot.kind, robot.name] = replace(robot, windows=windows)
+            read.update(new)
+        seen |= read
     if not robots:
         raise ConfigurationError("give at least one log: a session's folder, an MCAP file, or a table of windows")
     return list(robots.values())
