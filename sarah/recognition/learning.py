@@ -29,6 +29,8 @@ MOST_WINDOWS = 1000
 LEAST_DEVIATION, LEAST_VARIANCE = 1e-2, 1e-4
 """Least standard deviation within a kind that features are scaled by, and least variance of scaled ones in any
 direction: a log may have no noise."""
+MOST_NAMED = 4
+"""Number of kinds that a message names."""
 UNITS = 16
 """Number of units in the hidden layer of a network."""
 
@@ -50,8 +52,10 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
     felt = {name: [one for robot in its if len(one := felt_with(robot, reference))] for name, its in by_kind.items()}
     kinds = {name: its for name, its in by_kind.items() if felt[name]}
     if len(kinds) < 2 or sum(map(len, (one for name in kinds for one in felt[name]))) < len(kinds) + 2:
+        seen = ", ".join(f"{sum(map(len, its))} of {name}" for name, its in list(felt.items())[:MOST_NAMED])
         raise ConfigurationError(
-            "the logs must have two kinds of robots, with several windows of the shipped parameters each, to tell apart"
+            "the logs must have two kinds of robots, with several windows of the shipped parameters each, "
+            f"and have {seen}{', …' if len(felt) > MOST_NAMED else ''}"
         )
     means = np.array([np.mean([one.mean(axis=0) for one in felt[name]], axis=0) for name in kinds])
     labels = np.concatenate([[index] * len(one) for index, name in enumerate(kinds) for one in felt[name]])

@@ -117,6 +117,14 @@ def test_robots_of_one_name_and_two_kinds_stay_apart(tmp_path: Path) -> None:
     assert [robot.kind for robot in read_logs(files)] == ["light", "heavy"]
 
 
+def test_files_of_one_name_are_named_with_their_folders(tmp_path: Path) -> None:
+    files = [tmp_path / one for one in ("a/windows.csv", "b/windows.csv", "mine.csv")]
+    for number, file in enumerate(files):
+        file.parent.mkdir(exist_ok=True)
+        table(file, a_z_mean=number)
+    assert [robot.name for robot in read_logs(files)] == ["a/windows", "b/windows", "mine"]
+
+
 def test_windows_that_two_logs_have_count_once(tmp_path: Path) -> None:
     path = session(tmp_path / "session", changes=())
     for other in (path, path / "windows.csv", mcap(tmp_path / "same.mcap", facts_of(OperationConfig(), 0))):
