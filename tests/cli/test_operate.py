@@ -11,6 +11,7 @@ import pytest
 from known_robots import LOGS
 from terminal import COARSE, Answer, done, run
 
+from sarah.cli.coverage import names_shown
 from sarah.cli.operate import change_of
 from sarah.cli.operate_text import scores_of
 from sarah.errors import TrainingInterruptedError
@@ -205,3 +206,12 @@ def test_mistakes_are_one_line_and_leave_no_folder(learned: Path, arguments: tup
 def test_coverage_is_shown(learned: Path) -> None:
     process = done("sarah-log", "--coverage", "logs.csv", cwd=learned.parent)
     assert "3 sets in all, 3 of them on more than one robot" in process.stdout
+    rows = [line.split() for line in process.stdout.splitlines()]
+    assert rows[0][:4] == ["robot", "windows", "shipped", "sets"] and rows[1][3:6] == ["12", "6", "3"]
+
+
+def test_names_of_robots_are_shortened_only_as_long_as_they_differ() -> None:
+    far = [f"payload {number}.0, engine mujoco, randomisation.friction 0.5, seed 0" for number in (8, 9)]
+    assert names_shown([*far, "mine"]) == [f"{one[:18]}…{one[-21:]}" for one in far] + ["mine"]
+    middle = [f"engine mujoco, randomisation.friction {number}.0, payload 8.0, seed 0, change 1" for number in (1, 2)]
+    assert names_shown(middle) == middle
