@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
+from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
@@ -53,17 +54,18 @@ def read_logs(paths: Sequence[Path]) -> list[LoggedRobot]:
 
     :param paths: folders of sessions, MCAP files and tables
     :return: robots in the order of the logs
-    :raises ConfigurationError: naming the log, if it cannot be read, has no window, or has other conditions than the
-        first one
+    :raises ConfigurationError: naming the log, if it cannot be read, has no window, or has other conditions than most
     """
+    if not paths:
+        raise ConfigurationError("give at least one log: a session's folder, an MCAP file, or a table of windows")
+    logs = [_read_log(path, name) for path, name in zip(paths, _names(paths), strict=True)]
+    usual, _ = Counter(its[0].conditions for its in logs).most_common(1)[0]
     robots: dict[tuple[str, str], LoggedRobot] = {}
-    first: Conditions | None = None
     seen: set[LoggedWindow] = set()
-    for path, name in zip(paths, _names(paths), strict=True):
+    for path, its in zip(paths, logs, strict=True):
         read: set[LoggedWindow] = set()
-        for robot in _read_log(path, name):
-            first = first or robot.conditions
-            first.check(robot.conditions, str(path))
+        for robot in its:
+            usual.check(robot.conditions, str(path))
             new = tuple(window for window in robot.windows if window not in seen)
             known = robots.get((robot.kind, robot.name))
             if new:
@@ -71,8 +73,6 @@ def read_logs(paths: Sequence[Path]) -> list[LoggedRobot]:
                 robots[robot.kind, robot.name] = replace(robot, windows=windows)
             read.update(new)
         seen |= read
-    if not robots:
-        raise ConfigurationError("give at least one log: a session's folder, an MCAP file, or a table of windows")
     return list(robots.values())
 
 

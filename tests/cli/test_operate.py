@@ -12,6 +12,7 @@ from known_robots import LOGS
 from terminal import COARSE, Answer, done, run
 
 from sarah.cli.coverage import names_shown
+from sarah.cli.offline import train_offline
 from sarah.cli.operate import change_of
 from sarah.cli.operate_text import scores_of
 from sarah.errors import TrainingInterruptedError
@@ -188,6 +189,7 @@ def test_a_session_keeps_what_it_recognises_by(learned: Path) -> None:
         (("sarah-operate", "--from", "known"), "--from is for --learner recognise, not careful"),
         (("sarah-operate", "--learner", "recognise", "--from", "nowhere"), "recognition folder nowhere does not exist"),
         (("sarah-operate", "--learner", "recognise", "paper", "--from", "known"), "recognised with: 0.39,0.72"),
+        (("sarah-operate", "--learner", "recognise", "--from", "logs.csv"), "recognition folder logs.csv is a file"),
         (
             ("sarah-operate", "--learner", "recognise", "--from", "known", "--measure-seconds", "5"),
             "the robot has measure_seconds 5.0, not 4.0",
@@ -201,6 +203,19 @@ def test_mistakes_are_one_line_and_leave_no_folder(learned: Path, arguments: tup
     process = run(*arguments, "--out", "new", cwd=learned.parent)
     assert process.returncode == 2 and reason in process.stderr and process.stderr.count("\n") == 1
     assert not (learned.parent / "new").exists()
+
+
+def test_what_is_left_out_does_not_count_as_learned(
+    learned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    header, *_, last = (learned.parent / "logs.csv").read_text().splitlines()
+    last = last.replace(LOGS[-1].name, "mine").replace("kind 1", "mine").rpartition(",")[0]
+    (tmp_path / "other.csv").write_text(f"{header}\n{last},3.0\n")
+    logs = (str(learned.parent / "logs.csv"), str(tmp_path / "other.csv"))
+    train_offline(("--offline", *logs, "--out", str(tmp_path / "known")))
+    said = capsys.readouterr().out
+    assert "from 72 windows of 6 robots\nleft out    mine: it never ran the parameters that" in said
+    assert f"recognised with, {SHIPPED[0]:g},{SHIPPED[1]:g}," in said
 
 
 def test_coverage_is_shown(learned: Path) -> None:

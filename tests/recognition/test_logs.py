@@ -175,6 +175,13 @@ def test_logs_that_cannot_be_compared_are_refused_by_name(
     assert str(paths[1]) in str(error.value)
 
 
+def test_the_log_that_differs_from_most_is_refused(tmp_path: Path) -> None:
+    seconds = {"odd": 5.0, "usual": 4.0, "another": 4.0}
+    paths = [table(tmp_path / f"{name}.csv", measure_seconds=its) for name, its in seconds.items()]
+    with pytest.raises(ConfigurationError, match=r"odd\.csv has measure_seconds 5\.0, not 4\.0"):
+        read_logs(paths)
+
+
 def test_what_is_no_log_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match=r"notes\.txt is no log"):
         read_logs([tmp_path / "notes.txt"])
