@@ -6,12 +6,13 @@ from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from sarah.operation.settings import BOX
+from sarah.operation.settings import BOX, SHIPPED
+from sarah.recognition.learning import is_same
 from sarah.recognition.logged import LoggedRobot
 from sarah.recognition.logs import read_logs
 
-LONGEST_SHOWN = 40
-"""Number of characters of a robot's name that are shown."""
+BEGINNING, END = 18, 21
+"""Number of characters at both ends of a long name that are shown, unless two robots then look the same."""
 
 
 def coverage_lines(paths: Sequence[Path]) -> Iterator[str]:
@@ -20,7 +21,9 @@ def coverage_lines(paths: Sequence[Path]) -> Iterator[str]:
     :param paths: folders of sessions, MCAP files and tables
     """
     robots = read_logs(paths)
-    rows = [("robot", "windows", "sets", "falls", *BOX.names), *map(_row, robots)]
+    head = ("robot", "windows", "shipped", "sets", "falls", *BOX.names)
+    names = names_shown([robot.name for robot in robots])
+    rows = [head, *((name, *_cells(robot)) for name, robot in zip(names, robots, strict=True))]
     widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
     for name, *cells in rows:
         yield f"{name:{widths[0]}}" + "".join(
@@ -28,12 +31,25 @@ def coverage_lines(paths: Sequence[Path]) -> Iterator[str]:
         )
     seen = Counter(parameters for robot in robots for parameters in {window.parameters for window in robot.windows})
     shared = sum(count > 1 for count in seen.values())
+    yield "shipped: windows with the shipped parameters, by which robots are recognised"
     yield f"{len(seen)} sets in all, {shared} of them on more than one robot: only these compare robots"
     yield "what a set is worth on a robot that never ran it, no log can tell"
 
 
-def _row(robot: LoggedRobot) -> tuple[str, ...]:
+def names_shown(names: Sequence[str]) -> list[str]:
+    """Names without the middle of long ones, or whole if two would look the same.
+
+    :param names: names of robots
+    """
+    longest = BEGINNING + 1 + END
+    short = [name if len(name) <= longest else f"{name[:BEGINNING]}…{name[-END:]}" for name in names]
+    looks = Counter(dict(zip(names, short, strict=True)).values())
+    return [name if looks[one] > 1 else one for name, one in zip(names, short, strict=True)]
+
+
+def _cells(robot: LoggedRobot) -> tuple[str, ...]:
     sets = {window.parameters for window in robot.windows}
     ranges = [f"{min(values):.2f} to {max(values):.2f}" for values in zip(*sets, strict=True)]
     falls = sum(window.fell for window in robot.windows)
-    return (robot.name[:LONGEST_SHOWN], str(len(robot.windows)), str(len(sets)), str(falls), *ranges)
+    shipped = sum(is_same(window.parameters, SHIPPED) for window in robot.windows)
+    return (str(len(robot.windows)), str(shipped), str(len(sets)), str(falls), *ranges)

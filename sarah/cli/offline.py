@@ -64,16 +64,15 @@ def train_offline(arguments: Sequence[str]) -> None:
 def _say(robots: Sequence[LoggedRobot], recognition: Recognition) -> None:
     from sarah.recognition.learning import best_of_all, best_set, rewards_of
 
-    windows = sum(len(robot.windows) for robot in robots)
-    print(f"learned     {recognition.kind} from {windows} windows of {len(robots)} robots")
-    left_out = dict.fromkeys(robot.kind for robot in robots if robot.kind not in recognition.kinds)
-    for kind in left_out:
-        print(f"left out    {kind}: it never ran the parameters that robots are recognised with")
+    used = [robot for robot in robots if robot.kind in recognition.kinds]
+    windows = sum(len(robot.windows) for robot in used)
+    print(f"learned     {recognition.kind} from {windows} windows of {len(used)} robots")
+    reference = ",".join(f"{value:g}" for value in recognition.reference)
+    for kind in dict.fromkeys(robot.kind for robot in robots if robot.kind not in recognition.kinds):
+        print(f"left out    {kind}: it never ran the parameters that robots are recognised with, {reference}")
     one_for_all, rows = best_of_all(recognition), []
-    for robot in robots:
-        if robot.kind in left_out:
-            continue
-        rewards, own = rewards_of([robot]), best_set(robot)
+    for robot in used:
+        rewards, own = rewards_of([robot]), best_set(robot, recognition.reference)
         seen = [
             f"{fmean(rewards[one]):.2f}" if one in rewards else "" for one in (recognition.reference, one_for_all, own)
         ]

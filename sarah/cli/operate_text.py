@@ -62,11 +62,23 @@ def summarise(result: SessionResult, frozen: SessionResult | None, spec: Session
     has_scores = all(window.score is not None for window in result.windows)
     print(f"{'score      ' if has_scores else 'observed   '} {scores_of(result)}")
     print(f"falls       {result.falls} in {len(result.windows)} windows")
+    if spec.learner == "recognise":
+        _say_recognised(result, spec, path)
     if frozen is not None:
         print(f"frozen      {scores_of(frozen)}; falls: {frozen.falls} in {len(frozen.windows)} windows")
     for change in spec.config.changes[result.windows[-1].changes :]:
         print(f"no change   at minute {change.minute:g}: no window began after it")
     print(f"folder      {path}")
+
+
+def _say_recognised(result: SessionResult, spec: SessionSpec, path: Path) -> None:
+    from sarah.recognition.recognition import read_recognition, shipped_recognition
+    from sarah.recognition.summary import known_set_run, likeness
+    from sarah.runs.session_folder import SessionFolder
+
+    recognition = read_recognition(SessionFolder(path).recognition_path) if spec.recognition else shipped_recognition()
+    print(f"recognised  {likeness(recognition, result.windows, spec.config.robot.scale)}")
+    print(f"known sets  {known_set_run(recognition, result.windows, result.parameters)}")
 
 
 def scores_of(result: SessionResult) -> str:

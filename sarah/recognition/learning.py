@@ -29,6 +29,8 @@ MOST_WINDOWS = 1000
 LEAST_DEVIATION, LEAST_VARIANCE = 1e-2, 1e-4
 """Least standard deviation within a kind that features are scaled by, and least variance of scaled ones in any
 direction: a log may have no noise."""
+MOST_NAMED = 4
+"""Number of kinds that a message names."""
 UNITS = 16
 """Number of units in the hidden layer of a network."""
 
@@ -50,8 +52,10 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
     felt = {name: [one for robot in its if len(one := felt_with(robot, reference))] for name, its in by_kind.items()}
     kinds = {name: its for name, its in by_kind.items() if felt[name]}
     if len(kinds) < 2 or sum(map(len, (one for name in kinds for one in felt[name]))) < len(kinds) + 2:
+        seen = ", ".join(f"{sum(map(len, its))} of {name}" for name, its in list(felt.items())[:MOST_NAMED])
         raise ConfigurationError(
-            "the logs must have two kinds of robots, with several windows of the shipped parameters each, to tell apart"
+            "the logs must have two kinds of robots, with several windows of the shipped parameters each, "
+            f"and have {seen}{', …' if len(felt) > MOST_NAMED else ''}"
         )
     means = np.array([np.mean([one.mean(axis=0) for one in felt[name]], axis=0) for name in kinds])
     labels = np.concatenate([[index] * len(one) for index, name in enumerate(kinds) for one in felt[name]])
@@ -62,7 +66,7 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
     between = np.linalg.norm(places[:, None] - places[None], axis=2) + np.diag(np.full(len(kinds), np.inf))
     if not (far := FAR * between.min(axis=1).max()):
         raise ConfigurationError("all kinds of robots in the logs feel the same: nothing tells them apart")
-    sets = list(dict.fromkeys([reference, *_candidates(kind, kinds, places)]))
+    sets = list(dict.fromkeys([reference, *_candidates(kind, kinds, places, reference)]))
     rewards, deviations = _worth(sets, kinds)
     return Recognition(
         kind=kind,
@@ -81,7 +85,9 @@ def learn(robots: Sequence[LoggedRobot], kind: Kind = "nearest", reference: Para
     )
 
 
-def _candidates(kind: Kind, kinds: Mapping[str, Sequence[LoggedRobot]], places: np.ndarray) -> list[Parameters]:
+def _candidates(
+    kind: Kind, kinds: Mapping[str, Sequence[LoggedRobot]], places: np.ndarray, reference: Parameters
+) -> list[Parameters]:
     """Sets that may be pushed."""
     if kind == "naf":
         from sarah.recognition.naf import chosen_sets  # slow to import because of torch
@@ -89,7 +95,7 @@ def _candidates(kind: Kind, kinds: Mapping[str, Sequence[LoggedRobot]], places: 
         every = [(index, robot) for index, robots in enumerate(kinds.values()) for robot in robots]
         windows = [(index, one.parameters, one.reward) for index, robot in every for one in robot.windows]
         return chosen_sets(places, windows)
-    return [best_set(robot) for robots in kinds.values() for robot in robots]
+    return [one for robots in kinds.values() for one in _best_sets(robots, reference)]
 
 
 def rewards_of(robots: Sequence[LoggedRobot]) -> dict[Parameters, list[float]]:
@@ -104,14 +110,38 @@ def rewards_of(robots: Sequence[LoggedRobot]) -> dict[Parameters, list[float]]:
     return rewards
 
 
-def best_set(robot: LoggedRobot) -> Parameters:
-    """The set of a robot whose repeated rewards, less a standard deviation, are highest; else the best single one.
+def best_set(robot: LoggedRobot, reference: Parameters = SHIPPED) -> Parameters:
+    """The set of a robot whose repeated rewards, less a standard deviation, are highest; of all sets, if none but the
+    reference is repeated.
 
     :param robot: robot of the logs
+    :param reference: parameters with which robots are recognised
     """
     rewards = rewards_of([robot])
-    repeated = {one: values for one, values in rewards.items() if len(values) >= REPEATED} or rewards
-    return max(repeated, key=lambda one: float(np.mean(repeated[one]) - np.std(repeated[one])))
+    least = REPEATED if _repeats(robot, reference) else 1
+    among = [one for one, values in rewards.items() if len(values) >= least]
+    return max(among, key=lambda one: float(np.mean(rewards[one]) - np.std(rewards[one])))
+
+
+def _repeats(robot: LoggedRobot, reference: Parameters) -> bool:
+    """Whether a robot has repeated a set other than the reference."""
+    repeated = (one for one, values in rewards_of([robot]).items() if len(values) >= REPEATED)
+    return not all(is_same(one, reference) for one in repeated)
+
+
+def _best_sets(robots: Sequence[LoggedRobot], reference: Parameters) -> list[Parameters]:
+    """Best sets of the robots of a kind: of those that have repeated any, if there are such robots."""
+    sure = [robot for robot in robots if _repeats(robot, reference)]
+    return [best_set(robot, reference) for robot in sure or robots]
+
+
+def is_same(parameters: Parameters, others: Parameters) -> bool:
+    """Whether two sets are the same but for rounding.
+
+    :param parameters: P1 to P5 and V1 to V4
+    :param others: those of the other set
+    """
+    return np.allclose(parameters, others, rtol=0.0, atol=SAME)
 
 
 def best_of_all(recognition: Recognition) -> Parameters:
@@ -128,7 +158,7 @@ def felt_with(robot: LoggedRobot, reference: Parameters) -> np.ndarray:
     :param robot: robot of the logs
     :param reference: parameters
     """
-    its = [window for window in robot.windows if np.allclose(window.parameters, reference, rtol=0.0, atol=SAME)]
+    its = [window for window in robot.windows if is_same(window.parameters, reference)]
     its = [window for window in its if not window.fell] or its
     return np.array([features_of(window.felt, robot.scale) for window in its]).reshape(-1, len(FEATURES))
 
@@ -140,7 +170,7 @@ def _rows(kinds: Mapping[str, Sequence[LoggedRobot]], reference: Parameters) -> 
         rewards = rewards_of(robots)
         tried = list(rewards)
         places = np.array([BOX.shares(one) for one in tried])
-        best = max(map(best_set, robots), key=lambda one: float(np.mean(rewards[one])))
+        best = max(_best_sets(robots, reference), key=lambda one: float(np.mean(rewards[one])))
         for centre, count in ((best, ROWS_AROUND_BEST), (reference, ROWS_AROUND_REFERENCE)):
             order = np.argsort(np.linalg.norm(places - BOX.shares(centre), axis=1), kind="stable")
             rows += [_row(index, tried[i], rewards[tried[i]]) for i in order[:count]]

@@ -5,7 +5,8 @@ from __future__ import annotations
 import csv
 import hashlib
 import json
-from collections.abc import Iterable, Mapping
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import groupby
 from pathlib import Path
@@ -19,7 +20,15 @@ from sarah.logs.reading import Log
 from sarah.logs.topics import WINDOWS
 from sarah.operation.settings import BOX, OperationConfig
 from sarah.operation.window import FELT, Window
-from sarah.recognition.logged import LONGEST_ROBOT, LoggedRobot, check_names, logged_robots, logged_window, number_of
+from sarah.recognition.logged import (
+    LONGEST_ROBOT,
+    LoggedRobot,
+    LoggedWindow,
+    check_names,
+    logged_robots,
+    logged_window,
+    number_of,
+)
 from sarah.recognition.recognition import Conditions
 from sarah.robot.dimensions import check_dimensions, scale_of
 from sarah.robot.scale import Scale
@@ -40,40 +49,52 @@ SLACK = 0.1
 """Time by which a window may be longer or shorter than it should be, in s."""
 
 
-def read_logs(paths: Iterable[Path]) -> list[LoggedRobot]:
-    """Read logs, and put the windows of the same robot together.
+def read_logs(paths: Sequence[Path]) -> list[LoggedRobot]:
+    """Read logs, and put the windows of the same robot together; those that a log before has, too, count once.
 
     :param paths: folders of sessions, MCAP files and tables
     :return: robots in the order of the logs
-    :raises ConfigurationError: naming the log, if it cannot be read, has no window, or has other conditions than the
-        first one
+    :raises ConfigurationError: naming the log, if it cannot be read, has no window, or has other conditions than most
     """
-    robots: dict[tuple[str, str], LoggedRobot] = {}
-    first: Conditions | None = None
-    for path in paths:
-        for robot in read_log(path):
-            first = first or robot.conditions
-            first.check(robot.conditions, str(path))
-            known = robots.get((robot.kind, robot.name))
-            windows = robot.windows if known is None else known.windows + robot.windows
-            robots[robot.kind, robot.name] = replace(robot, windows=windows)
-    if not robots:
+    if not paths:
         raise ConfigurationError("give at least one log: a session's folder, an MCAP file, or a table of windows")
+    logs = [_read_log(path, name) for path, name in zip(paths, _names(paths), strict=True)]
+    usual, _ = Counter(its[0].conditions for its in logs).most_common(1)[0]
+    robots: dict[tuple[str, str], LoggedRobot] = {}
+    seen: set[LoggedWindow] = set()
+    for path, its in zip(paths, logs, strict=True):
+        read: set[LoggedWindow] = set()
+        for robot in its:
+            usual.check(robot.conditions, str(path))
+            new = tuple(window for window in robot.windows if window not in seen)
+            known = robots.get((robot.kind, robot.name))
+            if new:
+                windows = new if known is None else known.windows + new
+                robots[robot.kind, robot.name] = replace(robot, windows=windows)
+            read.update(new)
+        seen |= read
     return list(robots.values())
 
 
-def read_log(path: Path) -> list[LoggedRobot]:
-    """Read a log: a robot for each time that something about it was changed.
+def _names(paths: Sequence[Path]) -> list[str]:
+    """Names of logs that name no robot: those of the files, with as many folders as tell them apart."""
+    whole = [(path.resolve().parent / path.resolve().stem).parts for path in paths]
+    names = []
+    for parts in whole:
+        others = [other for other in whole if other != parts]
+        length = next(n for n in range(1, len(parts) + 1) if all(other[-n:] != parts[-n:] for other in others))
+        names.append("/".join(parts[-length:]))
+    return names
 
-    :param path: folder of a session, MCAP file or table
-    :raises ConfigurationError: naming the log, if it cannot be read or has no window
-    """
+
+def _read_log(path: Path, name: str) -> list[LoggedRobot]:
+    """Robots of a log: one for each time that something about it was changed; of the given name if it names none."""
     if SESSION.owns(path):
         robots = _of_session(path)
     elif path.suffix == MCAP:
-        robots = _of_mcap(path)
+        robots = _of_mcap(path, name)
     elif path.suffix == TABLE:
-        robots = _of_table(path)
+        robots = _of_table(path, name)
     else:
         raise ConfigurationError(f"{path} is no log: it is neither a session's folder, nor a {MCAP} or {TABLE} file")
     if not robots:
@@ -146,7 +167,7 @@ def _robot_of(kind: str, seed: int) -> str:
     return f"{kind}, seed {seed}"
 
 
-def _of_mcap(path: Path) -> list[LoggedRobot]:
+def _of_mcap(path: Path, name: str) -> list[LoggedRobot]:
     log = Log(path)
     values = [log.values(message) for message in log.messages() if message.topic == WINDOWS.name]
     if not values:
@@ -164,7 +185,7 @@ def _of_mcap(path: Path) -> list[LoggedRobot]:
         raise ConfigurationError(f"{path} does not say which windows it has: {error!s:.300}") from error
     _check_durations(path, values, shared)
     rows = [{**one, **{name: one.get(f"felt_{name}") for name in FELT}} for one in values]
-    name = log.about.get("robot", path.stem)
+    name = log.about.get("robot", name)
     return logged_robots(path, rows, name, log.about.get("kind", name), shared, scale_of(dimensions))
 
 
@@ -177,7 +198,7 @@ def _check_durations(path: Path, windows: Iterable[Mapping[str, Any]], condition
             raise ConfigurationError(f"{path} has a window of {duration:g} s, not of {seconds:g} s")
 
 
-def _of_table(path: Path) -> list[LoggedRobot]:
+def _of_table(path: Path, name: str) -> list[LoggedRobot]:
     """Robots of a table with the columns of a session's ``windows.csv``, and perhaps one that names the robot."""
     rows = _rows_of(path)
     robots: list[LoggedRobot] = []
@@ -188,8 +209,8 @@ def _of_table(path: Path) -> list[LoggedRobot]:
         if given != first:
             raise ConfigurationError(f"{path} has windows of {given}, and others of {first}")
     conditions = from_mapping(Conditions(), first or {})
-    for (name, kind), its in groupby(rows, lambda row: (row.get("robot") or path.stem, row.get("kind"))):
-        robots += logged_robots(path, list(its), name, kind or name, conditions, Scale())
+    for (robot, kind), its in groupby(rows, lambda row: (row.get("robot") or name, row.get("kind"))):
+        robots += logged_robots(path, list(its), robot, kind or robot, conditions, Scale())
     return robots
 
 

@@ -86,7 +86,8 @@ class Folder:
         :raises RunFolderError: naming what is missing
         """
         if not self.path.is_dir():
-            raise RunFolderError(f"{self.kind.folder} {self.path} does not exist")
+            is_what = "is a file, not a folder" if self.path.exists() else "does not exist"
+            raise RunFolderError(f"{self.kind.folder} {self.path} {is_what}")
         kind = f"finished {self.kind.name}" if finished else self.kind.name
         for file in (self.specification_path, self.result_path) if finished else (self.specification_path,):
             if not file.is_file():

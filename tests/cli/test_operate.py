@@ -11,6 +11,8 @@ import pytest
 from known_robots import LOGS
 from terminal import COARSE, Answer, done, run
 
+from sarah.cli.coverage import names_shown
+from sarah.cli.offline import train_offline
 from sarah.cli.operate import change_of
 from sarah.cli.operate_text import scores_of
 from sarah.errors import TrainingInterruptedError
@@ -170,7 +172,8 @@ def test_a_session_keeps_what_it_recognises_by(learned: Path) -> None:
     arguments = ("--learner", "recognise", "--from", "known", *COARSE, "--out", "mine")
     done("sarah-operate", *arguments, "--minutes", "0.1", cwd=learned.parent)
     (learned / "recognition.json").rename(learned / "moved.json")
-    done("sarah-operate", "--resume", "mine", "--minutes", "0.15", cwd=learned.parent)
+    resumed = done("sarah-operate", "--resume", "mine", "--minutes", "0.15", cwd=learned.parent)
+    assert "\nrecognised  unlike all 3 known kinds\nknown sets  none ran" in resumed.stdout
     (learned / "moved.json").rename(learned / "recognition.json")
     mine = SessionFolder.open(learned.parent / "mine")
     assert len(mine.windows()) == 2
@@ -186,6 +189,7 @@ def test_a_session_keeps_what_it_recognises_by(learned: Path) -> None:
         (("sarah-operate", "--from", "known"), "--from is for --learner recognise, not careful"),
         (("sarah-operate", "--learner", "recognise", "--from", "nowhere"), "recognition folder nowhere does not exist"),
         (("sarah-operate", "--learner", "recognise", "paper", "--from", "known"), "recognised with: 0.39,0.72"),
+        (("sarah-operate", "--learner", "recognise", "--from", "logs.csv"), "recognition folder logs.csv is a file"),
         (
             ("sarah-operate", "--learner", "recognise", "--from", "known", "--measure-seconds", "5"),
             "the robot has measure_seconds 5.0, not 4.0",
@@ -201,6 +205,28 @@ def test_mistakes_are_one_line_and_leave_no_folder(learned: Path, arguments: tup
     assert not (learned.parent / "new").exists()
 
 
+def test_what_is_left_out_does_not_count_as_learned(
+    learned: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    header, *_, last = (learned.parent / "logs.csv").read_text().splitlines()
+    last = last.replace(LOGS[-1].name, "mine").replace("kind 1", "mine").rpartition(",")[0]
+    (tmp_path / "other.csv").write_text(f"{header}\n{last},3.0\n")
+    logs = (str(learned.parent / "logs.csv"), str(tmp_path / "other.csv"))
+    train_offline(("--offline", *logs, "--out", str(tmp_path / "known")))
+    said = capsys.readouterr().out
+    assert "from 72 windows of 6 robots\nleft out    mine: it never ran the parameters that" in said
+    assert f"recognised with, {SHIPPED[0]:g},{SHIPPED[1]:g}," in said
+
+
 def test_coverage_is_shown(learned: Path) -> None:
     process = done("sarah-log", "--coverage", "logs.csv", cwd=learned.parent)
     assert "3 sets in all, 3 of them on more than one robot" in process.stdout
+    rows = [line.split() for line in process.stdout.splitlines()]
+    assert rows[0][:4] == ["robot", "windows", "shipped", "sets"] and rows[1][3:6] == ["12", "6", "3"]
+
+
+def test_names_of_robots_are_shortened_only_as_long_as_they_differ() -> None:
+    far = [f"payload {number}.0, engine mujoco, randomisation.friction 0.5, seed 0" for number in (8, 9)]
+    assert names_shown([*far, "mine"]) == [f"{one[:18]}…{one[-21:]}" for one in far] + ["mine"]
+    middle = [f"engine mujoco, randomisation.friction {number}.0, payload 8.0, seed 0, change 1" for number in (1, 2)]
+    assert names_shown(middle) == middle

@@ -21,15 +21,17 @@ from sarah.runs.session_robot import SessionRobot
 WEAK = Change(0.1, {"randomisation": {"actuator_bandwidth": 12.0}})
 
 
-def window(index: int, changes: int = 0) -> Window:
-    felt = tuple(float(number) for number in range(len(FELT)))
+def window(index: int, changes: int = 0, first: float = 0.0) -> Window:
+    felt = (first, *(float(number) for number in range(1, len(FELT))))
     return Window(index, 6.0 * index, 6.0, changes, SHIPPED, 0.9, 0.8, index == 1, felt)
 
 
-def session(path: Path, seed: int = 0, robot_there: SessionRobot | None = None, **settings: Any) -> Path:
+def session(
+    path: Path, seed: int = 0, robot_there: SessionRobot | None = None, felt: float = 0.0, **settings: Any
+) -> Path:
     config = OperationConfig(**{"changes": (WEAK,), **settings})
     folder = SessionFolder.create(path, SessionSpec(learner="none", seed=seed, config=config), robot=robot_there)
-    for one in (window(0), window(1), window(2, changes=len(config.changes))):
+    for one in (window(0, first=felt), window(1, first=felt), window(2, len(config.changes), felt)):
         folder.append_window(one)
     return path
 
@@ -54,7 +56,8 @@ def test_a_session_is_cut_where_something_was_changed(tmp_path: Path) -> None:
 
 
 def test_sessions_of_one_robot_are_put_together_and_of_one_kind_are_not(tmp_path: Path) -> None:
-    robots = read_logs([session(tmp_path / name, seed, changes=()) for name, seed in (("a", 0), ("b", 0), ("c", 1))])
+    logs = enumerate((("a", 0), ("b", 0), ("c", 1)))
+    robots = read_logs([session(tmp_path / name, seed, felt=i, changes=()) for i, (name, seed) in logs])
     assert [len(robot.windows) for robot in robots] == [6, 3]
     assert robots[0].kind == robots[1].kind and robots[0].name != robots[1].name
 
@@ -109,8 +112,23 @@ def test_a_table_of_a_spreadsheet_is_a_log(tmp_path: Path) -> None:
 
 
 def test_robots_of_one_name_and_two_kinds_stay_apart(tmp_path: Path) -> None:
-    files = [table(tmp_path / f"{kind}.csv", robot="mine", kind=kind) for kind in ("light", "heavy")]
+    kinds = {"light": 1.0, "heavy": 2.0}
+    files = [table(tmp_path / f"{kind}.csv", robot="mine", kind=kind, a_z_mean=a) for kind, a in kinds.items()]
     assert [robot.kind for robot in read_logs(files)] == ["light", "heavy"]
+
+
+def test_files_of_one_name_are_named_with_their_folders(tmp_path: Path) -> None:
+    files = [tmp_path / one for one in ("a/windows.csv", "b/windows.csv", "mine.csv")]
+    for number, file in enumerate(files):
+        file.parent.mkdir(exist_ok=True)
+        table(file, a_z_mean=number)
+    assert [robot.name for robot in read_logs(files)] == ["a/windows", "b/windows", "mine"]
+
+
+def test_windows_that_two_logs_have_count_once(tmp_path: Path) -> None:
+    path = session(tmp_path / "session", changes=())
+    for other in (path, path / "windows.csv", mcap(tmp_path / "same.mcap", facts_of(OperationConfig(), 0))):
+        assert [len(robot.windows) for robot in read_logs([path, other])] == [3]
 
 
 @pytest.mark.parametrize(
@@ -157,6 +175,13 @@ def test_logs_that_cannot_be_compared_are_refused_by_name(
     assert str(paths[1]) in str(error.value)
 
 
+def test_the_log_that_differs_from_most_is_refused(tmp_path: Path) -> None:
+    seconds = {"odd": 5.0, "usual": 4.0, "another": 4.0}
+    paths = [table(tmp_path / f"{name}.csv", measure_seconds=its) for name, its in seconds.items()]
+    with pytest.raises(ConfigurationError, match=r"odd\.csv has measure_seconds 5\.0, not 4\.0"):
+        read_logs(paths)
+
+
 def test_what_is_no_log_is_named(tmp_path: Path) -> None:
     with pytest.raises(ConfigurationError, match=r"notes\.txt is no log"):
         read_logs([tmp_path / "notes.txt"])
@@ -164,10 +189,10 @@ def test_what_is_no_log_is_named(tmp_path: Path) -> None:
         read_logs([])
 
 
-def mcap(path: Path, facts: dict[str, str] | None = None, duration: float = 6.0) -> Path:
+def mcap(path: Path, facts: dict[str, str] | None = None, duration: float = 6.0, felt: float = 0.0) -> Path:
     config = OperationConfig()
     with RobotLog(path, about_robot(config.robot, "a program", **(facts or {}))) as log:
-        plain = window(0).plain()
+        plain = window(0, first=felt).plain()
         log.window(6.0, {**plain, "seconds": duration})
     return path
 
@@ -182,7 +207,8 @@ def test_the_windows_of_an_mcap_file_are_a_log(tmp_path: Path) -> None:
 def test_kinds_with_many_differing_settings_stay_apart(tmp_path: Path) -> None:
     shared = {"engine": "mujoco", "randomisation": {"actuator_bandwidth": 12.0, "delay_seconds": 0.03, "friction": 0.5}}
     configs = [from_mapping(OperationConfig(), {"robot": {**shared, "payload": load}}) for load in (5.0, 8.0)]
-    files = [mcap(tmp_path / f"{seed}.mcap", facts_of(config, 2**31 - 1)) for seed, config in enumerate(configs)]
+    facts = [facts_of(config, 2**31 - 1) for config in configs]
+    files = [mcap(tmp_path / f"{felt}.mcap", its, felt=felt) for felt, its in enumerate(facts)]
     first, second = read_logs(files)
     assert first.kind != second.kind and first.kind.startswith("engine mujoco, randomisation.friction")
 

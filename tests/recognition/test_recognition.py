@@ -4,12 +4,12 @@ import dataclasses
 from pathlib import Path
 
 import pytest
-from known_robots import LOGS
+from known_robots import LOGS, top
 
 from sarah.errors import ConfigurationError
 from sarah.operation.settings import SHIPPED
 from sarah.operation.window import FELT
-from sarah.recognition.learning import learn
+from sarah.recognition.learning import best_set, learn
 from sarah.recognition.recognition import Recognition, read_recognition, shipped_recognition
 
 
@@ -28,6 +28,12 @@ def test_the_shipped_one_is_small_and_knows_robots() -> None:
 
 ONE_KIND = f'{{"kinds": ["a"], "places": [[]], "sets": [{list(SHIPPED)}], "rewards": [[REWARD]], "deviations": [[0]]}}'
 EMPTY_LAYER = '{"weights": [], "biases": []}'
+
+
+def test_sets_that_ran_once_are_known_where_none_is_repeated() -> None:
+    short = [dataclasses.replace(robot, windows=robot.windows[:6]) for robot in LOGS]  # the reference, and three once
+    assert [best_set(robot) for robot in short[::2]] == [top(kind) for kind in (-1.0, 0.0, 1.0)]
+    assert set(learn(short).sets) == {SHIPPED, *(top(kind) for kind in (-1.0, 0.0, 1.0))}
 
 
 @pytest.mark.parametrize(
@@ -62,7 +68,7 @@ def test_a_hostile_file_is_named_with_what_is_wrong(text: str, reason: str, tmp_
 
 
 def test_nothing_is_known_without_logs() -> None:
-    with pytest.raises(ConfigurationError, match="two kinds"):
+    with pytest.raises(ConfigurationError, match=r"two kinds of robots.*, and have 6 of kind -1$"):
         learn(LOGS[:1])
     alike = [one._replace(felt=(1.0,) * len(FELT)) for one in LOGS[0].windows]
     with pytest.raises(ConfigurationError, match="feel the same"):
