@@ -28,8 +28,8 @@ WELL_BELOW = 0.1
 BANNING = 2
 """Number of such windows in a row that ban a set."""
 LENGTH_AT_TOP = 0.2
-"""Length over which the reward changes near a set that was found by learning, as a share of each range: shorter than
-elsewhere, so that trials change less."""
+"""Length over which the reward is taken to change near a set that was found by learning, as a share of each range:
+shorter than elsewhere, so that trials change less."""
 RECENT = 4
 """Number of the last windows of the careful learner whose mean is compared with what is believed of a set."""
 LOSS = 0.1
