@@ -2,13 +2,13 @@
 
 import base64
 import contextlib
+import dataclasses
 import io
 import re
 import shutil
 import subprocess
 import time
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,11 +17,16 @@ import numpy as np
 import pytest
 import terminal
 
-from sarah import BALANCE, BalanceConfig, EpisodeSpec, OperationConfig, Push, SessionSpec, simulate
+from sarah.episode.episode import simulate
+from sarah.episode.push import Push
+from sarah.episode.spec import EpisodeSpec
+from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.operation.settings import OperationConfig
 from sarah.pictures.colours import LEFT, PHASE_COLOURS, PUSH, RIGHT
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_episodes import episodes_of_run
 from sarah.runs.run_folder import RunFolder
+from sarah.runs.session import SessionSpec
 from sarah.runs.session_folder import SessionFolder
 from sarah.training.operate import operate
 from sarah.viewer.scenario import Scenario
@@ -38,6 +43,7 @@ LEARNED = (0.8, 0.1, 0.3, -0.1)
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunFolder:
+    """A training of three episodes."""
     path = tmp_path_factory.mktemp("runs") / "balance"
     run = RunFolder.create(path, TrainingConfig(task="balance", episodes=3, episode=CONFIG))
     for index, parameters in enumerate(TRIED):
@@ -78,6 +84,7 @@ def page_of(browser: Any, *arguments: str | Path) -> Iterator[Any]:
 
 @pytest.fixture(scope="module")
 def page(browser: Any, run: RunFolder) -> Iterator[Any]:
+    """The page of the run, with its first episode."""
     with page_of(browser, run.path) as page:
         field(page, "Show").click()
         page.get_by_role("option").get_by_text("2 s", exact=True).click()
@@ -138,6 +145,7 @@ def choose_on_page(page: Any, text: str) -> None:
 
 
 def chosen(page: Any, run: RunFolder, index: int) -> tuple[EpisodeSpec, str]:
+    """An episode that the page shows, and its score there."""
     choose_on_page(page, f"episode {index}")
     choice = next(choice for choice in episodes_of_run(run) if choice.name == f"{index}")
     eventually(lambda: scores(page)[0] == f"{choice.score:.3f}")
@@ -173,6 +181,28 @@ def has_plots_of(page: Any, moment: float, window: float) -> bool:
     return is_there and ranges == [ranges[0]] * 6 and abs(first + left * (last - first) - moment) < 0.05
 
 
+def test_the_robot_is_drawn_with_a_blue_and_a_red_leg(page: Any) -> None:
+    eventually(lambda: min(share(picture(page), *channels(LEFT)), share(picture(page), *channels(RIGHT))) > 0.004)
+    pixels = picture(page)
+    difference = pixels[:, :, 2] - pixels[:, :, 0]
+    blue, red = ((sign * difference > 40).nonzero()[1].mean() for sign in (1, -1))
+    assert blue > red  # the camera looks at the robot's front, so its left leg is on the right
+
+
+def test_an_episode_plays(page: Any) -> None:
+    def shown() -> float:
+        return float(field(page, "Time (s)").input_value())
+
+    page.get_by_role("button", name="Back to this episode").click()
+    eventually(lambda: shown() < 2.0)
+    begin = shown()
+    eventually(lambda: begin + 0.2 < shown())
+    pause(page)
+    paused = shown()
+    time.sleep(1.0)
+    assert shown() == paused
+
+
 def test_scrubbing_shows_that_moment_in_scene_and_plots(page: Any, run: RunFolder) -> None:
     choose_on_page(page, "learned")
     result = simulate(episodes_of_run(run)[0].spec, record_trace=True)
@@ -194,15 +224,15 @@ def test_what_is_changed_is_simulated_beside_the_old_score(page: Any, run: RunFo
     spec, old = chosen(page, run, 1)
     scenario = Scenario.of(spec)
     slider(page, "P1").press("End")
-    new = f"{simulate(replace(scenario, stepping=(2.0, *scenario.stepping[1:])).spec()).score:.3f}"
+    new = f"{simulate(dataclasses.replace(scenario, stepping=(2.0, *scenario.stepping[1:])).spec()).score:.3f}"
     assert new != old
     eventually(lambda: scores(page) == [new, old])
     page.get_by_role("button", name="Back to this episode").click()
     eventually(lambda: scores(page) == [old, new])
     enter(page, "Bumps (mm)", "20")
     enter(page, "Slope (°)", "8")
-    terrain = replace(scenario.terrain, roughness=(0.02, 0.02), slope_degrees=(8.0, 8.0))
-    rough = f"{simulate(replace(scenario, terrain=terrain).spec()).score:.3f}"
+    terrain = dataclasses.replace(scenario.terrain, roughness=(0.02, 0.02), slope_degrees=(8.0, 8.0))
+    rough = f"{simulate(dataclasses.replace(scenario, terrain=terrain).spec()).score:.3f}"
     eventually(lambda: scores(page)[0] == rough)
 
 
