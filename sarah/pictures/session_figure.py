@@ -51,7 +51,8 @@ def draw_session(
         if frozen:
             ends, means = [window.end / 60.0 for window in frozen], _running_mean([window.worth for window in frozen])
             axis.plot(ends, means, color=FROZEN, label=f"mean of {SMOOTHED} without learning")
-        axis.plot([minutes[i] for i in falls], [scores[i] for i in falls], "x", color=FALL, label="fall")
+        if falls:
+            axis.plot([minutes[i] for i in falls], [scores[i] for i in falls], "x", color=FALL, label="fall")
         made = changes[: windows[-1].changes]
         for number, change in enumerate(made, 1):
             axis.axvline(change.minute, color="black", linestyle="--", linewidth=0.8)

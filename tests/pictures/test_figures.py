@@ -119,6 +119,7 @@ def test_words_of_changes_do_not_overlap(monkeypatch: MonkeyPatch) -> None:
     figure.canvas.draw()
     legend = figure.axes[0].get_legend()
     assert legend is not None
+    assert "fall" not in [words.get_text() for words in legend.get_texts()]
     boxes = [words.get_window_extent() for words in (*figure.axes[0].texts, legend)]
     assert len(boxes) == 4
     assert not any(one.overlaps(other) for one, other in combinations(boxes, 2))
