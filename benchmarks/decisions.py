@@ -16,7 +16,6 @@ from typing import Any
 import numpy as np
 from gymnasium import spaces
 from pandas import DataFrame
-from threadpoolctl import threadpool_limits
 
 from benchmarks.timing import Timing
 from experiments.record import Row
@@ -26,6 +25,7 @@ from sarah.agents.smoothed_buffer import ADDITIONS_PER_CHOICE
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.task_answers import disturbances_of
 from sarah.episode.tasks import STEPPING
+from sarah.process import apart
 from sarah.training.recommendation import Tried
 from sarah.training.recorder import EPISODES_PER_RECOMMENDATION
 
@@ -57,7 +57,7 @@ class Decisions(Timing):
 
         :param episodes: number of episodes
         """
-        with threadpool_limits(1):  # as in a training
+        with apart():  # on one thread, as in a training
             yield self._times(episodes)
 
     def _times(self, episodes: int) -> Row:
