@@ -149,11 +149,11 @@ class _Known:
             self._observed.setdefault(window.parameters, []).append(window.observed_reward)
 
     def is_better_than(self, rewards: list[float]) -> bool:
-        """Whether a set is believed to be better than what the careful learner gets.
+        """Whether a set is believed to be better than what the careful learner gets, and would be pushed.
 
         :param rewards: its last rewards
         """
-        return len(rewards) == RECENT and self._better(fmean(rewards)) is not None
+        return len(rewards) == RECENT and self._better(max(fmean(rewards), self._present())) is not None
 
     def careful(self, seed: int) -> CarefulSearch:
         """The careful learner from the best set, with what was observed, and what logs say of robots of this kind.

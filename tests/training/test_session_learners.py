@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from known_robots import LOGS, KnownRobot, felt, top
+from known_robots import LOGS, KnownRobot, felt, logged, top
 from operated import START, FormulaRobot
 
 from sarah.errors import ConfigurationError
@@ -101,15 +101,16 @@ def test_in_the_last_window_there_is_nothing_to_gain_by_a_trial() -> None:
         assert (asked == SHIPPED) == (search is last)
 
 
+class Stumbling(FormulaRobot):
+    """A robot that stumbles once a minute, whatever its parameters are."""
+
+    def run(self, parameters: Parameters) -> Window:
+        window = super().run(parameters)
+        stumbles = window.index % 10 == 9 and not window.fell
+        return dataclasses.replace(window, observed_reward=0.3) if stumbles else window
+
+
 def test_a_single_bad_window_is_no_change() -> None:
-    """A robot that stumbles once a minute, whatever its parameters are, is still climbed with."""
-
-    class Stumbling(FormulaRobot):
-        def run(self, parameters: Parameters) -> Window:
-            window = super().run(parameters)
-            stumbles = window.index % 10 == 9 and not window.fell
-            return dataclasses.replace(window, observed_reward=0.3) if stumbles else window
-
     robots = [Stumbling(hill) for _ in range(2)]
     for seed, robot in enumerate(robots):
         LEARNERS["careful"](robot, SHIPPED, seed)
@@ -187,6 +188,17 @@ def test_a_robot_that_changes_is_recognised_anew() -> None:
     first = next(window for window in robot.seen if window.parameters == top(1.0))
     assert 120.0 <= first.begin <= 120.0 + 5 * 6.0
     assert robot.mean_reward(2.6) > 0.9
+
+
+def test_what_was_learned_outlasts_bad_windows() -> None:
+    """A known set is better than the mean of windows with a stumble among them, but not than the shipped one."""
+
+    class Known(Stumbling, KnownRobot):
+        pass
+
+    robot = Known(0.4, 10.0)
+    operate_recognised(robot, SHIPPED, 0, learn([logged(kind, seed) for kind in (-1.0, 0.4, 1.0) for seed in range(2)]))
+    assert robot.mean_reward(8.0) > robot.mean_reward(0.0, 1.0) + 0.02
 
 
 @pytest.mark.parametrize("fall", [None, 1.8])
