@@ -74,7 +74,8 @@ class Conditions:
         :raises ConfigurationError: naming the first value that differs
         """
         for key, here, there in _differences(self, others):
-            raise ConfigurationError(f"{name} has {key} {there!r}, not {here!r}: what is felt cannot be compared")
+            size = " (which goes with the robot's size)" if key == "control_rate" else ""
+            raise ConfigurationError(f"{name} has {key} {there!r}, not {here!r}{size}: what is felt cannot be compared")
 
 
 @dataclass(frozen=True)
