@@ -48,19 +48,17 @@ FINER = PyBulletPhysics(500, 30, added_plate_inertia=0.0)
 
 @dataclass(frozen=True)
 class Throughput(Timing):
-    """Speeds of episodes and of trainings in PyBullet, and their ratios.
+    """Speeds of episodes and of a training in PyBullet, and their ratios.
 
     :param rounds: number of rounds, each of which measures every loop once; ratios are medians of the rounds'
     :param loop_seconds: time limit of a loop's episode, in s
-    :param trainings: number of trainings, of different seeds, whose medians the figures are
-    :param budget: number of episodes of a training; below 25 there are no trials of its recommendation
-    :param time_limit: time limit of a training's episode, in s
+    :param budget: number of episodes of the training; below 25 there are no trials of its recommendation
+    :param time_limit: time limit of the training's episodes, in s
     """
 
     depends_on = TRAINING
     rounds: int = 5
     loop_seconds: float = 11.0
-    trainings: int = 3
     budget: int = 100
     time_limit: float = 30.0
 
@@ -74,8 +72,7 @@ class Throughput(Timing):
         :param run: name of the run
         """
         with tempfile.TemporaryDirectory() as folder:
-            many = [self._trainings(seed, Path(folder, str(seed))) for seed in range(self.trainings)]
-        measured = self._loops() | {name: median(one[name] for one in many) for name in many[0]}
+            measured = self._loops() | self._training(Path(folder))
         yield from ({"quantity": quantity, "value": value} for quantity, value in measured.items())
 
     def _loops(self) -> dict[str, float]:
@@ -108,10 +105,10 @@ class Throughput(Timing):
             "standard physics over 500 Hz with 30 iterations": ratio(closed, ("closed", FINER)),
         }
 
-    def _trainings(self, seed: int, folder: Path) -> dict[str, float]:
+    def _training(self, folder: Path) -> dict[str, float]:
         """The same training with one worker and with two, and its episodes without learner or scheduler."""
         episode = EpisodeConfig(engine="pybullet", time_limit=self.time_limit)
-        config = TrainingConfig(episodes=self.budget, seed=seed, episode=episode)
+        config = TrainingConfig(episodes=self.budget, episode=episode)
         taken, share = {}, 0.0
         for count in (1, 2):
             with Workers(count) as workers:
@@ -269,10 +266,10 @@ def seconds_without_learner(specs: list[EpisodeSpec], folder: Path) -> float:
 
 
 FULL = Throughput()
-QUICK = Throughput(time_limit=2.0, rounds=1, trainings=1, budget=5)
+QUICK = Throughput(time_limit=2.0, rounds=1, budget=5)
 
 
 def speeds(rows: DataFrame) -> str:
     """All quantities, of both runs."""
-    caption = "Episodes on two cores of a small virtual machine: medians of five rounds, in two runs of the same."
+    caption = "Episodes on two cores of a small virtual machine, in two runs of the same."
     return turned_table(rows, ["quantity"], "run", "value", caption, ".3g")
