@@ -131,7 +131,7 @@ def times(rows: DataFrame) -> str:
     """Time of a decision and of a recommendation."""
     shown = rows.rename(columns=lambda column: column.replace("_milliseconds", " (ms)"))
     caption = (
-        "Processor time beside the updates, after so many episodes: to choose an action, and to note an episode and "
+        "Processor time between two episodes, without the updates: to choose an action, and to note an episode and "
         "recommend parameters."
     )
     return table(shown, ["episodes", "action (ms)", "recommendation (ms)"], caption, **{"(ms)": ".1f"})

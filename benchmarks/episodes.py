@@ -94,7 +94,7 @@ def speeds(rows: DataFrame) -> str:
     """Speed of all cases."""
     columns = ["engine", "physics", "ground", "times_real_time", "time_ratio", "time_ratio_low", "time_ratio_high"]
     caption = (
-        "Speed of an episode, and its processor time over that in PyBullet at the standard physics on the plane: "
+        "Speed of an episode, and its processor time divided by that in PyBullet at the standard physics on the plane: "
         "the median, the smallest and the largest of seven."
     )
     return table(rows, columns, caption, real_time=".0f", time_ratio=".2f")

@@ -203,5 +203,7 @@ def speeds(rows: DataFrame) -> str:
     }
     formats = {**dict.fromkeys(("NAF over TD3", "without dropout", "with V"), ".2f"), "products' share": ".0%"}
     columns = ["layers", "observations", "actions", *heads.values()]
-    caption = "Updates per second with batches of 256, and speeds of NAF and two of its variants over that of TD3."
+    caption = (
+        "Updates per second with batches of 256, and speeds of NAF and two of its variants divided by that of TD3."
+    )
     return table(rows.rename(columns=heads), columns, caption, **formats)

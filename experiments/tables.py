@@ -104,6 +104,17 @@ def share_of(count: int, total: int, what: str) -> str:
     return f"all {total} {what}" if count == total else f"{count} of {total} {what}"
 
 
+def survived_pushes(shares: Iterable[float], newtons: float) -> str:
+    """Which pushes are survived, in words: ``every push of 100 N``, or ``85 to 86 % of pushes of 100 N``.
+
+    :param shares: lowest and highest share of the pushes that are survived, or shares in between too
+    """
+    found = Series(list(shares))
+    if found.min() == 1.0:
+        return f"every push of {newtons:.0f} N"
+    return f"{span(found, '.0%')} of pushes of {newtons:.0f} N"
+
+
 def so_far(made: int, planned: int) -> str:
     """How many of some seeds, in words while some are still to be made: ``5``, or ``3 of 5 so far``."""
     return str(made) if made == planned else f"{made} of {planned} so far"

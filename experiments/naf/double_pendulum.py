@@ -56,8 +56,8 @@ def answer(rows: DataFrame) -> str:
     medians = [shown(of["return"].median(), ".0f") for of in (published, naf)]
     return (
         f"As published, V exceeds what rewards allow within {FULL.steps:,} steps in {above}: it comes to "
-        f"{span(published.v_over_bound, '.2f')} times its bound. With W in the targets it comes to "
-        f"{shown(naf.v_over_bound.max(), '.2f')} at most. The median return is then {medians[0]} as published and "
+        f"{span(published.v_over_bound, '.2f')} times its bound. With W in the targets it comes to at most "
+        f"{shown(naf.v_over_bound.max(), '.2f')} times its bound. The median return is {medians[0]} as published, and "
         f"{medians[1]} with W (seeds: {seeds})."
     )
 

@@ -11,12 +11,12 @@ from dataclasses import dataclass, replace
 from typing import Any, NamedTuple, get_args
 
 from matplotlib.figure import Figure
-from pandas import DataFrame
+from pandas import DataFrame, Series
 
 from experiments.experiment import Experiment, product, survival
 from experiments.record import Row
 from experiments.shapes import line_panels
-from experiments.tables import span, table, turned_table
+from experiments.tables import span, survived_pushes, table, turned_table
 from sarah.episode.episode import Episode
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import Push
@@ -34,9 +34,10 @@ SHIPPED = PARAMETER_SETS["balance"].spec
 CONTROLLERS: Mapping[str, tuple[float, ...]] = {"shipped V": SHIPPED.parameters, "V = 0": (0.0,) * 4}
 """Values of V1 to V4 by name. P1 to P5 are the shipped ones in either case."""
 SETTINGS = (
-    "P1 to P5 are the shipped ones, pushes of 0.15 s begin at 2 to 3 s, and a robot that reaches 8 s has survived"
+    "P1 to P5 are the shipped ones. Pushes last 0.15 s and begin at 2 to 3 s. A robot that reaches 8 s counts as "
+    "having survived."
 )
-"""What the caption of a table with pushes says."""
+"""Last sentences of the caption of a table with pushes."""
 LEVEL = "level"
 NEWTONS = 100.0
 """Force of the pushes that come in every situation, in N."""
@@ -136,21 +137,21 @@ QUICK = Conditions(episodes=1, time_limit=1.1)
 def answer(rows: DataFrame) -> str:
     """What the robot survives, with the shipped V and with its hips locked."""
 
-    def survived(controller: str, newtons: float, situation: str = LEVEL) -> str:
-        chosen = _everywhere(rows, newtons).query("controller == @controller and situation == @situation")
-        return span(chosen.survival, ".0%")
+    def survived(controller: str, newtons: float, situation: str = LEVEL) -> Series[float]:
+        return _everywhere(rows, newtons).query("controller == @controller and situation == @situation").survival
 
     ours, locked = CONTROLLERS
     score = _everywhere(rows, 0.0).query("controller == @ours").set_index("situation").score
     kept = score["slope of 8°"] / score[LEVEL].to_numpy()
     return (
-        f"On level ground the robot survives {survived(ours, NEWTONS)} of pushes of {NEWTONS:.0f} N with the shipped "
-        f"V1 to V4, and {survived(locked, NEWTONS)} with its hips locked (V = 0). Of pushes of 125 N it survives "
-        f"{survived(ours, 125.0)} with the shipped V1 to V4, and {survived(locked, 125.0)} with locked hips. Ranges "
-        "are those of the two engines.\n\n"
-        f"On bumps of 10 mm it survives {survived(ours, NEWTONS, 'bumps of 10 mm')} of pushes of {NEWTONS:.0f} N. On a "
+        f"On level ground the robot survives {survived_pushes(survived(ours, NEWTONS), NEWTONS)} with the shipped V1 "
+        f"to V4, and {span(survived(locked, NEWTONS), '.0%')} with its hips locked (V = 0). Of pushes of 125 N it "
+        f"survives {span(survived(ours, 125.0), '.0%')}, and {span(survived(locked, 125.0), '.0%')} with locked hips. A range "
+        "spans the two engines.\n\n"
+        f"On bumps of 10 mm it survives {survived_pushes(survived(ours, NEWTONS, 'bumps of 10 mm'), NEWTONS)}. On a "
         f"slope of 8° it keeps {span(kept, '.0%')} of its score. With ice under one foot "
-        f"{survived(ours, 0.0, 'ice under the left foot')} of the robots stay in place, even without a push."
+        f"{span(survived(ours, 0.0, 'ice under the left foot'), '.0%')} of the robots stay in place, even without a "
+        "push."
     )
 
 
@@ -171,27 +172,29 @@ def _on_level_ground(rows: DataFrame) -> DataFrame:
 
 def _compared(rows: DataFrame, kept: Sequence[str], column: str, what: str) -> str:
     """A table of one column by engine and V."""
-    caption = f"{what}, of {rows.episodes.max()} pushes each, at the standard physics. {SETTINGS}."
+    caption = f"{what}, at the standard physics. {SETTINGS}"
     return turned_table(rows, kept, ("engine", "controller"), column, caption, ".1%" if column == "survival" else "")
 
 
 def forces(rows: DataFrame) -> str:
     """Survival by force and direction."""
     level = _on_level_ground(rows)
-    return _compared(level, ("push_n", "direction"), "survival", "Survival on level ground by force and direction")
+    what = f"Survival of {level.episodes.max()} pushes of each force on level ground, by direction"
+    return _compared(level, ("push_n", "direction"), "survival", what)
 
 
 def distances(rows: DataFrame) -> str:
     """How far from its start the robot ends."""
     level = _on_level_ground(rows)
-    what = "Median distance from the start at the end in cm, on level ground"
+    what = f"Median distance from the start at the end, in cm, after {level.episodes.max()} pushes on level ground"
     return _compared(level[level.direction == "all"], ("push_n",), "final_distance_cm", what)
 
 
 def situations(rows: DataFrame) -> str:
     """Survival in each situation."""
-    what = f"Survival of pushes of {NEWTONS:.0f} N from everywhere by situation"
-    return _compared(_everywhere(rows, NEWTONS), ("situation",), "survival", what)
+    found = _everywhere(rows, NEWTONS)
+    what = f"Survival of {found.episodes.max()} pushes of {NEWTONS:.0f} N from all directions in each situation"
+    return _compared(found, ("situation",), "survival", what)
 
 
 def unpushed(rows: DataFrame) -> str:
@@ -199,8 +202,8 @@ def unpushed(rows: DataFrame) -> str:
     still = _everywhere(rows, 0.0)
     ours = still[still.controller == "shipped V"]
     caption = (
-        f"How the robot steps without a push, with the shipped P1 to P5 and V1 to V4: means of {ours.episodes.max()} "
-        f"episodes of {TIME_LIMIT:.0f} s at the standard physics, and the median of the final distance."
+        f"How the robot steps without a push, with the shipped P1 to P5 and V1 to V4. Values are means of "
+        f"{ours.episodes.max()} episodes of {TIME_LIMIT:.0f} s at the standard physics; the final distance is a median."
     )
     columns = ["survival", "score", "steps_per_second", "shifts_by_sensors", "sole_clearance_mm", "final_distance_cm"]
     return table(ours, ["engine", "situation", *columns], caption, survival=".1%")

@@ -108,8 +108,8 @@ def answer(rows: DataFrame) -> str:
     told = of_sets(rows)
     good = told["stepping"][told["stepping"].pybullet_score >= GOOD]
     return (
-        f"Well, where the robot steps well: for the {len(good)} of {len(told['stepping'])} sets of P1 to P5 that score "
-        f"at least {GOOD} in PyBullet, MuJoCo's score differs by {span(good.difference, '+.0%')}. Under pushes of "
+        f"Well, where the robot steps well. Of {len(told['stepping'])} sets of P1 to P5, {len(good)} score at least "
+        f"{GOOD} in PyBullet. On these MuJoCo's score differs by {span(good.difference, '+.0%')}. Under pushes of "
         f"{NEWTONS:.0f} N chance decides more, and it differs by {span(told['balance'].difference, '+.0%')}."
     )
 
@@ -132,9 +132,9 @@ def transfer(rows: DataFrame) -> str:
     survive = (found[SURVIVAL] == 1.0).all(axis=1).sum()
     return (
         f"Yes, without retraining. In the other engine Second Trainings keep {span(kept['balance'], '.0%')} of their "
-        f"score, and First Trainings {span(kept['stepping'], '.0%')}, {shown(kept['stepping'].median(), '.0%')} in the "
-        f"median. With the parameters of {share_of(survive, len(found), 'trainings')} the robot survives every episode "
-        "in both."
+        f"score. First Trainings keep {span(kept['stepping'], '.0%')}; their median is "
+        f"{shown(kept['stepping'].median(), '.0%')}. With the parameters of "
+        f"{share_of(survive, len(found), 'trainings')} the robot survives every episode in both engines."
     )
 
 
@@ -143,9 +143,9 @@ def trainings(rows: DataFrame) -> str:
     found = of_trainings(rows).groupby(["task", "learned_in"], sort=False)
     kept = {"kept": found.kept.median(), "kept_low": found.kept.min(), "kept_high": found.kept.max()}
     caption = (
-        f"Medians of {FULL.seeds} trainings by NAF, each judged in both engines on the same episodes: "
-        f"{EPISODES['stepping']} of 30 s after a First Training, and {EPISODES['balance']} pushes of 100 N at 1 to 4 s "
-        "after a Second; what is kept with its range."
+        f"Medians of {FULL.seeds} trainings by NAF, and the range of what they keep. Both engines judge each training "
+        f"in the same episodes: a First Training in {EPISODES['stepping']} of 30 s, a Second under "
+        f"{EPISODES['balance']} pushes of 100 N at 1 to 4 s."
     )
     medians = found[GAIT].median().assign(**kept).reset_index()
     return table(medians, list(medians.columns), caption)

@@ -96,8 +96,8 @@ QUICK = FalseAlarms(episodes=1)
 def alarms(rows: DataFrame) -> str:
     """Robots that a supervisor stops although nothing fails."""
     caption = (
-        f"Robots of {FULL.episodes} with the shipped parameters that survive {TIME_LIMIT:g} s without a supervisor and "
-        f"with one, and survivors that it would have stopped."
+        f"How many of {FULL.episodes} robots with the shipped parameters survive {TIME_LIMIT:g} s, without a "
+        f"supervisor and with one, and how many of the survivors it would have stopped."
     )
     columns = ["situation", "engine", "survivors", "survivors_supervised", "stopped"]
     return table(rows, columns, caption)

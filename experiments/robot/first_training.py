@@ -115,7 +115,7 @@ def claims(rows: DataFrame) -> str:
     is_human = runs.steps_per_second.round(1).between(3.0, 5.0).all()
     found = [
         (
-            "a step frequency as a human's, 3 to 5 per second",
+            "the robot steps as often as a human, 3 to 5 times per second",
             "yes" if is_human else "in part",
             f"{span(runs.steps_per_second, '.1f')} per second; the reward asks for 3",
         ),
@@ -128,21 +128,25 @@ def claims(rows: DataFrame) -> str:
         (
             "P4 and P5 do not matter",
             "yes",
-            f"robots that step end with a P4 of {span(runs.P4, '.1f')} and a P5 of {span(runs.P5, '.1f')}",
+            f"trainings end with a P4 from {span(runs.P4, '.1f')} and a P5 from {span(runs.P5, '.1f')}",
         ),
         ("the parameters must be positive", "not tested", "they cannot be negative here"),
         (
             "the paper's own values work",
             "yes",
-            f"they score {shown(paper['score'], '.2f')}, and {shown(paper['survival'], '.0%')} of the robots survive",
+            f"their score is {shown(paper['score'], '.2f')}, and their survival {shown(paper['survival'], '.0%')}",
         ),
     ]
-    return table(DataFrame(found, columns=CLAIM), CLAIM, "First Trainings by NAF in PyBullet, on 12 unseen seeds.")
+    caption = (
+        "First Trainings by NAF in PyBullet, on 12 unseen seeds. A parameter stabilises at a value if trainings end "
+        f"within {NEAR} of it."
+    )
+    return table(DataFrame(found, columns=CLAIM), CLAIM, caption)
 
 
 def settling(values: Series[float], claimed: float) -> tuple[str, str, str]:
     """Cells about the claim that a parameter settles at a value: in all trainings, in part in at least half, or not."""
     near = (values - claimed).abs() <= NEAR
     verdict = "yes" if near.all() else "in part" if near.mean() >= 0.5 else "no"
-    found = f"{near.sum()} of {len(near)} trainings end within {NEAR} of it; all end from {span(values, '.2f')}"
+    found = f"{near.sum()} of {len(near)} trainings; they end from {span(values, '.2f')}"
     return f"{values.name} stabilises at about {claimed}", verdict, found

@@ -83,24 +83,24 @@ def answer(rows: DataFrame) -> str:
     hard = (rows.push_n == 125.0) & (rows.controller == "shipped V")
     survived = {physics: group.survival for physics, group in groups(rows[hard], "physics").items()}
     at_standard, at_reference = (shares.max() - shares.min() for shares in survived.values())
-    standard, reference = (" and ".join(shown(share, ".0%") for share in shares) for shares in survived.values())
+    standard, reference = ([shown(share, ".0%") for share in shares] for shares in survived.values())
     verdict = (
-        "The engines agree better at the reference, so believe its figures. They are as uncertain as the engines "
-        "differ there."
+        "The engines agree better there, so believe these figures, to within the difference between the engines."
         if at_reference < at_standard
-        else "The engines agree no better at the reference, so nothing narrower than the range from the lowest to the "
-        "highest of these figures can be believed."
+        else "The engines agree no better there, so all that is known is the range from the lowest to the highest of "
+        "these figures."
     )
     return (
-        f"Of pushes of 125 N from anywhere the robot with the shipped V survives {standard} at the standard physics of "
-        f"PyBullet and MuJoCo, and {reference} at their reference physics. {verdict}"
+        f"With the shipped V the robot survives {standard[0]} of pushes of 125 N in PyBullet and {standard[1]} in "
+        f"MuJoCo, both at the standard physics. At the reference physics it survives {reference[0]} and "
+        f"{reference[1]}. {verdict}"
     )
 
 
 def survivals(rows: DataFrame) -> str:
     """Survival in each engine at each physics."""
     columns = ["push_n", "controller", "engine", "physics", "episodes", "survival", "survival_low", "survival_high"]
-    caption = f"Survival of the same pushes from anywhere, with its 95 % interval (Wilson). {SETTINGS}."
+    caption = f"Survival of the same pushes from all directions, with its 95 % interval (Wilson). {SETTINGS}"
     return table(rows, columns, caption, survival=".1%")
 
 

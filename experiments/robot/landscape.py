@@ -16,14 +16,14 @@ from experiments.experiment import Experiment
 from experiments.record import Row
 from experiments.robot.engines import NEWTONS, settings
 from experiments.shapes import groups, line_panels
-from experiments.tables import span, turned_table
+from experiments.tables import span, table, turned_table
 from sarah.episode.evaluation import evaluate
 from sarah.episode.tasks import TASKS
 from sarah.reports.transfer import ENGINES
 from sarah.simulation.engines import Engine
 
 COST = 0.05
-"""Loss of score that a good value may have."""
+"""Loss of score that a good value may have, in the engine where its score is lower."""
 
 CENTRES = {"stepping": (0.4, 1.0, 0.1, 1.0, 1.0), "balance": (1.0, 0.0, 0.0, 0.0)}
 VALUES = {
@@ -76,11 +76,16 @@ def good_values(rows: DataFrame) -> tuple[dict[str, str], dict[str, str]]:
 
 def answer(rows: DataFrame) -> str:
     """Which values are good."""
-    few, many = (", ".join(f"{name} ({values})" for name, values in told.items()) for told in good_values(rows))
-    return (
-        f"The score depends most on the few good values of {few}. The others have a wide range in which they hardly "
-        f"matter: {many}. A value is good if it costs at most {COST} of the score in either engine."
-    )
+    few, many = (" and ".join(", ".join(told).rsplit(", ", 1)) for told in good_values(rows))
+    return f"The score depends most on {few}, which have few good values. {many} hardly matter over a wide range."
+
+
+def good(rows: DataFrame) -> str:
+    """The good values of each parameter."""
+    few, many = good_values(rows)
+    found = DataFrame(sorted((few | many).items()), columns=["parameter", "good values"])
+    caption = f"Values whose score, in the engine where it is lower, is at most {COST} below the best."
+    return table(found, list(found.columns), caption)
 
 
 def _along(task: str, rows: DataFrame) -> Figure:

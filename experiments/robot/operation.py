@@ -120,17 +120,17 @@ def answer(rows: DataFrame) -> str:
     right = careful[~careful.robot.isin(["weak servos", CHANGING])]
     dearer = careful.set_index("robot").gain - evolved.set_index("robot").gain
     falls = careful.falls_per_session.max()
-    fell = f"Robots fall up to {shown(falls, '.1f')} times a session." if falls else "No robot falls."
+    fell = f"Robots fall up to {shown(falls, '.1f')} times a session." if falls else "With this learner no robot falls."
     return (
         f"Much, where the robot differs much. With weak servos frozen parameters score "
-        f"{shown(weak.score['none'], '.2f')}, and the careful learner reaches "
+        f"{shown(weak.score['none'], '.2f')}. The careful learner reaches "
         f"{shown(weak.score_from_8_min['careful'], '.2f')} in the last two of ten minutes. If the servos weaken at "
         f"minute 5, it gets back to {shown(changing.score_from_8_min['careful'], '.2f')}. On the other robots the "
-        f"shipped parameters are nearly right already, and the first minutes pay for the trials: over the ten minutes "
-        f"the gain is {span(right.gain, '.3f')}. {fell}\n\n"
+        f"shipped parameters are nearly right already, so there is little to gain: {span(right.gain, '.3f')} over the "
+        f"ten minutes. {fell}\n\n"
         f"The parameters that CMA-ES ends with score {span(evolved.score_of_last_parameters, '.2f')}, and those of the "
-        f"careful learner {span(careful.score_of_last_parameters, '.2f')}. But its search costs more: over ten minutes "
-        f"the score is {span(dearer, '.2f')} lower than with the careful learner, and robots fall up to "
+        f"careful learner {span(careful.score_of_last_parameters, '.2f')}. But the search of CMA-ES costs more: over "
+        f"the ten minutes its score is {span(dearer, '.2f')} lower, and robots fall up to "
         f"{shown(evolved.falls_per_session.max(), '.1f')} times a session."
     )
 
@@ -155,7 +155,7 @@ def robots(rows: DataFrame) -> str:
     caption = (
         f"Sessions of {FULL.minutes:g} minutes in MuJoCo that begin with the shipped P1 to P5 and V1 to V4: score, its "
         f"gain over frozen parameters with the 95 % interval, falls, score in the last two minutes, and score of the "
-        f"parameters that are left."
+        f"last parameters."
     )
     return table(rows[rows.robot != CHANGING], [*columns, "score_of_last_parameters"], caption, **FORMATS)
 

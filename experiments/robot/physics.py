@@ -111,10 +111,10 @@ def answer(rows: DataFrame) -> str:
     off = beside_finest(rows).pivot(index=CONDITION, columns="setting", values="difference").abs()
     close, worst = (off < CLOSE).sum(), off.max().map(lambda value: shown(value, ".0%"))
     return (
-        f"The standard physics is fine enough, with exceptions: with good parameters its scores are within "
-        f"{shown(CLOSE, '.0%')} of the finest setting's in {close.standard} of {len(off)} combinations of parameters, "
-        f"control rate and sensors, and MuJoCo's in {close.mujoco}. At worst the standard physics is off by "
-        f"{worst.standard}, and MuJoCo by {worst.mujoco}."
+        f"The standard physics is fine enough, with exceptions. In {close.standard} of {len(off)} combinations of good "
+        f"parameters, control rate and sensors its score is within {shown(CLOSE, '.0%')} of the finest setting's. "
+        f"MuJoCo's is in {close.mujoco}. At worst the standard physics is off by {worst.standard}, and MuJoCo by "
+        f"{worst.mujoco}."
     )
 
 
@@ -135,9 +135,9 @@ def far_off(rows: DataFrame) -> str:
     both = beside_finest(rows)
     columns = ["difference", "difference_error", "finest_steps_per_second", "steps_per_second", "shifts_timed_out"]
     caption = (
-        f"Differences from the finest setting's score beyond {shown(FAR, '.0%')} with their standard errors, and how "
-        f"the robot steps there, without a push: steps per second at the finest setting and at this one, and the share "
-        f"of this one's SHIFTs that timed out."
+        f"Where the score differs by more than {shown(FAR, '.0%')} from that at the finest setting, without a push: "
+        f"the difference with its standard error, the steps per second at both settings, and the share of SHIFTs that "
+        f"timed out."
     )
     far = both[both.difference.abs() > FAR]
     formats = {"difference_error": ".1%", "timed_out": ".0%"}

@@ -18,7 +18,7 @@ from experiments.robot import best_known
 from experiments.robot.balance_trainings import JUDGING_SEED, NAMES, PUSH_100
 from experiments.robot.best_known import BEST, KNOWN, NEUTRAL, SearchExperiment
 from experiments.shapes import groups, legend, panels, strips
-from experiments.tables import WORDS, shown, table
+from experiments.tables import WORDS, shown, survived_pushes, table
 from sarah.control.parameters import Parameters
 from sarah.reports.uncertainty import number_at, standard_error
 from sarah.simulation.engines import Engine
@@ -120,13 +120,13 @@ def answer(rows: DataFrame) -> str:
     sentences = []
     for engine, group in _engines(rows).items():
         found, (neutral,) = _summary(group, RECOMMENDED), _known(group, NEUTRAL).survival_100
-        survival = [shown(share, ".0%") for share in (found["survival_100"], found["lowest_survival"], neutral)]
-        reached = shown(found["of_best"], ".1%")
+        mean, lowest = found["survival_100"], found["lowest_survival"]
+        which = "each training" if lowest == 1.0 else f"a training, and {shown(lowest, '.0%')} after the worst"
         sentences.append(
-            f"In {WORDS[engine]} the robot survives {survival[0]} of pushes of 100 N after a training,"
-            f" {survival[1]} after the worst one, and {survival[2]} without the hip law. Under harder pushes the"
-            f" {found['trainings']} trainings reach {reached} of the best known score on average, and"
-            f" {found['within_5_%']} of them come within 5 % of it."
+            f"In {WORDS[engine]} the robot survives {survived_pushes([mean], 100.0)} after {which}. Without the hip"
+            f" law it survives {shown(neutral, '.0%')} of them. Under harder pushes the {found['trainings']} trainings"
+            f" reach {shown(found['of_best'], '.1%')} of the best known score on average, and {found['within_5_%']} of them"
+            " come within 5 % of it."
         )
     return " ".join(sentences)
 
@@ -168,9 +168,9 @@ def closeness(rows: DataFrame) -> str:
         for kind in (RECOMMENDED, MU)
     ]
     caption = (
-        "Score over that of the best known set of the engine, mean and lowest, with the standard error over trainings"
-        " and pushes; number of trainings within 5 % of the best known score, with its 95 % interval over pushes;"
-        " survival of pushes of 100 N, mean and lowest."
+        "Score as a share of the best known one in the engine, mean with its standard error, and lowest; number of"
+        " trainings within 5 % of the best known score, with its 95 % interval; survival of pushes of 100 N, mean and"
+        " lowest."
     )
     formats = dict.fromkeys(("of_best", "survival_100", "lowest", "lowest_survival"), ".1%")
     return table(DataFrame(found), list(found[0]), caption, **formats)
@@ -185,7 +185,7 @@ def compared(rows: DataFrame) -> str:
             scores = _scores(_known(group, run))
             found.append({"engine": engine, "run": run, "score": scores.mean(), **ratio("of_best", scores, best)})
     caption = (
-        f"The sets that trainings are compared with: mean score under {FULL.judging} hard pushes, and its share of the"
-        " best known score with its standard error."
+        f"The sets that trainings are compared with: mean score under {FULL.judging} hard pushes, also as a share of"
+        " the best known score, with its standard error."
     )
     return table(DataFrame(found), list(found[0]), caption, of_best=".1%")

@@ -125,6 +125,6 @@ def stops(rows: DataFrame) -> str:
     ]
     names = [f"{words}, {name}" for name in ENGINES.values() for words in ("stopped", "median time, s")]
     wide.columns = names
-    caption = f"Robots of {FULL.seeds} that the supervisor stops, and the median time from the fault until it does."
+    caption = f"How many of {FULL.seeds} robots the supervisor stops, and the median time from the fault until it does."
     formats = {name: ".0f" if name.startswith("stopped") else ".2f" for name in names}
     return table(wide.reset_index(), ["fault", *names], caption, **formats)

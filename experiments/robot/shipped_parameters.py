@@ -22,7 +22,7 @@ from experiments.experiment import Experiment, product
 from experiments.record import Row
 from experiments.robot.balance_trainings import NAMES as BALANCE_NAMES
 from experiments.robot.shipping import CHOSEN
-from experiments.tables import shown, table
+from experiments.tables import shown, survived_pushes, table
 from sarah.control.parameters import STEPPING_PARAMETERS
 from sarah.episode.evaluation import evaluate
 from sarah.episode.push import Push, PushedConfig
@@ -114,13 +114,12 @@ def answer(rows: DataFrame) -> str:
     """How many pushes the robot survives, in PyBullet."""
     survival = rows[rows.engine == "pybullet"].set_index(["set", "condition"]).survival
     (soft, hard), (locked_soft, locked_hard) = (
-        [shown(survival[name, condition], ".0%") for condition in ("100 N", "125 N")]
-        for name in ("balance", "stepping")
+        [survival[name, condition] for condition in ("100 N", "125 N")] for name in ("balance", "stepping")
     )
     return (
-        f"With the shipped parameters the robot survives {soft} of pushes of 100 N in PyBullet, and {locked_soft} with "
-        f"locked hips. Of pushes of 125 N it survives {hard}, and {locked_hard} with locked hips. Pushes come from "
-        "anywhere."
+        f"In PyBullet the robot survives {survived_pushes([soft], 100.0)} with the shipped parameters, and "
+        f"{shown(locked_soft, '.0%')} with locked hips. Of pushes of 125 N it survives {shown(hard, '.0%')}, and "
+        f"{shown(locked_hard, '.0%')} with locked hips. Pushes come from all directions."
     )
 
 
@@ -136,8 +135,8 @@ def survived(rows: DataFrame) -> str:
     """How well both sets do."""
     caption = (
         f"Means of {FULL.episodes} episodes of each set, engine and condition. Sagittal pushes come from within 30"
-        " degrees of front or back, the others from anywhere. They begin at 2 to 3 s, and a robot that reaches 10 s has"
-        " survived."
+        " degrees of front or back, the others from all directions. Pushes begin at 2 to 3 s. A robot that reaches 10 s"
+        " counts as having survived."
     )
     return table(rows, ["set", "engine", "condition", *METRICS], caption)
 

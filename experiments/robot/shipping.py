@@ -243,13 +243,15 @@ def answer(rows: DataFrame) -> str:
 def verdicts(rows: DataFrame) -> str:
     """The candidates of the last round."""
     caption = (
-        "The candidates of the last round and their score over that of the set that shipped before (geometric mean"
-        " over conditions)."
+        "The candidates of the last round, and their score divided by that of the set that shipped before (geometric"
+        " mean over conditions)."
     )
     return table(_finalists(rows).drop_duplicates("run"), ["run", *NAMES, "overall", "verdict"], caption, overall=".3f")
 
 
 def conditions(rows: DataFrame) -> str:
     """What the candidates of the last round score in each condition."""
-    caption = "Score over that of the set that shipped before, by condition, for the candidates of the last round."
+    caption = (
+        "Score of the candidates of the last round in each condition, divided by that of the set that shipped before."
+    )
     return turned_table(_finalists(rows), ["engine", "condition", "episodes"], "run", "relative", caption, ".3f")

@@ -109,7 +109,7 @@ def answer(rows: DataFrame) -> str:
     return (
         "Processes of long runs hardly grow. From few episodes to many, memory grows by at most "
         f"{shown(found.growth_mib.max(), '.0f')} MiB ({shown((found.growth_mib / found.memory_mib).max(), '.0%')}), "
-        f"and the number of open files by at most {max(files, 0)}."
+        f"and {f'the number of open files by at most {files}' if files > 0 else 'no process opens more files'}."
     )
 
 

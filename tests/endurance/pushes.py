@@ -240,9 +240,9 @@ def answer(rows: DataFrame) -> str:
         for which in (rows.sent == NOTHING, rows.sent == WATCHED, ~own & ~rows.sent.isin([NOTHING, WATCHED]))
     )
     return (
-        f"Hardly. At most {of_messages} of the ticks were late with messages, {of_nothing} without, and {watched} with "
-        f"a log and a viewer. {messages:,} messages changed parameters only where they were valid pushes. Each single "
-        "push was applied at the first swap of legs after it had come, or at once while the robot stood."
+        f"Hardly. With messages at most {of_messages} of the ticks were late, without messages {of_nothing}, and with "
+        f"a log and a viewer {watched}. Of {messages:,} messages only valid pushes changed parameters. Each single "
+        "push was applied at the next swap of legs, or at once while the robot stood."
     )
 
 

@@ -28,7 +28,7 @@ from experiments.robot.first_training import settling
 from experiments.robot.hard_pushes import difference
 from experiments.robot.race import columns, curve_of, ranked
 from experiments.robot.recognised import BEST, CAREFUL, NEAREST, compared, verdicts
-from experiments.tables import heading, shown, span, table, turned_table
+from experiments.tables import heading, shown, span, survived_pushes, table, turned_table
 from sarah.agents import NAF
 from sarah.reports.race_entry import RaceCurve
 from sarah.simulation.randomisation import SensorConditions
@@ -69,6 +69,8 @@ def test_headings_and_values_are_written_as_people_write_them() -> None:
     assert [shown(value, spec) for value, spec in ((-0.126, ".2f"), (0.985, ".0%"), (3, ""), ("a", ".1f"))] == written
     assert shown(float("nan"), ".2f") == "\N{EN DASH}" and shown(float("inf"), ".0f") == "not reached"
     assert span(ROWS.score, ".2f") == "\N{MINUS SIGN}0.25 to 1.00"
+    assert survived_pushes([1.0, 1.0], 100.0) == "every push of 100 N"
+    assert survived_pushes([0.8, 1.0], 100.0) == "80 to 100\N{NO-BREAK SPACE}% of pushes of 100 N"
 
 
 def test_a_table_can_be_turned() -> None:
