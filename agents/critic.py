@@ -38,7 +38,7 @@ class Values(NamedTuple):
 
     :param q: ``Q``, of the actions
     :param best: ``V``, of the best actions
-    :param target: what targets take of such a state: ``W``, or ``V`` where there is no ``W``
+    :param target: value of such a state in targets: ``W``, or ``V`` where there is no ``W``
     :param mu: Best actions, of shape (batch, action dim)
     :param distance: Squared distance of the actions from ``mu``
     """

@@ -1,4 +1,4 @@
-"""What a Gaussian process expects of actions after some episodes, and where it expects most."""
+"""The rewards that a Gaussian process expects of actions after some episodes, and the action with the highest."""
 
 import math
 from collections.abc import Sequence

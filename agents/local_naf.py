@@ -31,8 +31,8 @@ class LocalNAF(NAF):
         it can be a function of the current progress remaining (from 1 to 0)
     :param elite_std: Standard deviation of these draws, in actions scaled to [-1, 1]; it can be a function of the
         current progress remaining (from 1 to 0)
-    :param elite_draws: Number of draws for each such action, of which the one is done of which the replay buffer
-        promises most: wide draws find their way by what is known
+    :param elite_draws: Number of draws for each such action. The one that the replay buffer expects most of is done, so
+        that wide draws follow what is known
     :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
         a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and not only after
         ``learning_starts`` uniform ones

@@ -40,7 +40,7 @@ class RunFolderError(SarahError, OSError):
 
 
 class ResumeError(RunFolderError):
-    """A training cannot be resumed: it would not go on exactly, or another training is at it."""
+    """A training cannot be resumed: it would not go on exactly, or another process runs it."""
 
 
 class SimulationError(SarahError, RuntimeError):

@@ -1,6 +1,6 @@
-"""Numbers from outside: a text spells them in one way, and Python has one type of them, whatever they come as.
+"""Numbers from outside: texts spell them in one way, and they become Python's own types, whatever they come as.
 
-What the command line accepts or refuses, so do settings files, tables and Python.
+Settings files, tables and Python accept and refuse the same as the command line.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""What is wide as the process: a learner has it for itself, and leaves it as the caller had it."""
+"""State that the whole process shares: a learner has it for itself, and leaves it as the caller had it."""
 
 from __future__ import annotations
 

@@ -1,7 +1,8 @@
 """Ranges of settings, which stand in their types: ``duration: Annotated[float, Within(0.0, 10.0, "s")]``.
 
-What is a range itself has its own in the same way: ``newtons: Annotated[tuple[float, float], Within(0.0, 1e4, "N")]``;
-and each of several numbers: ``layers: tuple[Annotated[int, Within(1, 1000)], ...]``.
+A setting that is a range itself has limits in the same way:
+``newtons: Annotated[tuple[float, float], Within(0.0, 1e4, "N")]``. So has each of several numbers:
+``layers: tuple[Annotated[int, Within(1, 1000)], ...]``.
 """
 
 from __future__ import annotations

@@ -146,8 +146,8 @@ def answer(rows: DataFrame) -> str:
     return (
         f"On level ground the robot survives {survived_pushes(survived(ours, NEWTONS), NEWTONS)} with the shipped V1 "
         f"to V4, and {span(survived(locked, NEWTONS), '.0%')} with its hips locked (V = 0). Of pushes of 125 N it "
-        f"survives {span(survived(ours, 125.0), '.0%')}, and {span(survived(locked, 125.0), '.0%')} with locked hips. A range "
-        "spans the two engines.\n\n"
+        f"survives {span(survived(ours, 125.0), '.0%')}, and {span(survived(locked, 125.0), '.0%')} with locked hips. "
+        "A range spans the two engines.\n\n"
         f"On bumps of 10 mm it survives {survived_pushes(survived(ours, NEWTONS, 'bumps of 10 mm'), NEWTONS)}. On a "
         f"slope of 8° it keeps {span(kept, '.0%')} of its score. With ice under one foot "
         f"{span(survived(ours, 0.0, 'ice under the left foot'), '.0%')} of the robots stay in place, even without a "

@@ -125,8 +125,8 @@ def answer(rows: DataFrame) -> str:
         sentences.append(
             f"In {WORDS[engine]} the robot survives {survived_pushes([mean], 100.0)} after {which}. Without the hip"
             f" law it survives {shown(neutral, '.0%')} of them. Under harder pushes the {found['trainings']} trainings"
-            f" reach {shown(found['of_best'], '.1%')} of the best known score on average, and {found['within_5_%']} of them"
-            " come within 5 % of it."
+            f" reach {shown(found['of_best'], '.1%')} of the best known score on average, and {found['within_5_%']} of"
+            " them come within 5 % of it."
         )
     return " ".join(sentences)
 

@@ -42,12 +42,13 @@ class CompareOptions:
     Unseen episodes judge what each training recommends at its end, and after every five episodes along the way. The
     table has the final score with its standard error, and how many trainings end at 95 % of the best known score. It
     also says after how many episodes more than half of the trainings have reached 90 % and 95 % along the way, and held
-    it over three evaluations: a multiple of five, or "not reached". It is printed, and written to the folder with a
-    plot. The same command continues a race that was interrupted.
+    it over three evaluations: a multiple of five, or "not reached". The command prints the table, and writes it to the
+    folder with a plot. The same command continues a race that was interrupted.
 
-    Judging takes longer than learning. With a push, {pushed_final} episodes judge the end of a training, and the
-    first {pushed_along} of them judge after every five of its episodes; without, {still_final} and {still_along}.
-    What is recommended again is judged once. The command says before it starts how many episodes it will simulate.
+    Judging takes longer than learning. With a push, {pushed_final} episodes judge the end of a training, and the first
+    {pushed_along} of them judge after every five of its episodes; without a push it is {still_final} and {still_along}.
+    A recommendation that comes again is judged once. Before it starts, the command says how many episodes it will
+    simulate.
 
     :param out: folder of the race, which also holds its run folders
     :param algorithms: names of different algorithms: {algorithms}
@@ -61,8 +62,8 @@ class CompareOptions:
         the task has a push, and {still_final} if not
     :param evaluations_along: number of these episodes that judge every recommendation along the way;
         by default {pushed_along} if the task has a push, and {still_along} if not
-    :param best_known: score of which a share must be reached; by default that of the best training, where different
-        episodes choose and judge the best
+    :param best_known: score that counts as 100 %; by default that of the best training, which some episodes choose and
+        others judge
     :param workers: number of processes on this machine that train, one training each; with 0, this process trains
     :param scheduler: address of a Dask scheduler whose workers train instead; they must share the folder's file system
     """

@@ -1,4 +1,4 @@
-"""``sarah-log --coverage``: which parameters logs have seen, and on which robots."""
+"""``sarah-log --coverage``: which parameters were tried in logs, and on which robots."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Former names, which commands take for one release more. What to write they all call ``--out``."""
+"""Former names of options, which commands accept for one more release. What they write is now always ``--out``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What ``--resume`` refuses and says, alike for trainings and sessions."""
+"""What ``--resume`` refuses and says, the same for trainings and sessions."""
 
 from __future__ import annotations
 

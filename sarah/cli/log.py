@@ -1,4 +1,4 @@
-"""``sarah-log``: what logs say, whether they are whole, and parts of them in other files."""
+"""``sarah-log``: what logs say, whether they are whole, and parts of them as other files."""
 
 from __future__ import annotations
 
@@ -28,12 +28,12 @@ class LogOptions:
     that was cut, by a full disk or because its process was killed, is read up to its last whole chunk.
 
     :param files: logs to read
-    :param check: whether to say only if each log is whole, cut, or has gaps, where the disk was too slow; every message
-        is checked, and the exit status is 1 if a log is not whole
+    :param check: whether to say only if each log is whole, is cut, or has gaps because the disk was too slow. Every
+        message is checked, and the exit status is 1 if a log is not whole
     :param cut: times at which a part begins and ends, in s since the run began; it is written as a log to --out
     :param out: file for the part of --cut
     :param csv: folder for a table of each topic, such as ticks.csv, with a column for each field
-    :param coverage: whether to say which parameters were seen on which robots, in the windows of sessions' folders, of
+    :param coverage: whether to say which parameters were tried on which robots, in the windows of sessions' folders, of
         MCAP files and of CSV files with the columns of a session's windows.csv
     """
 

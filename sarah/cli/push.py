@@ -1,4 +1,4 @@
-"""``sarah-push``: give a robot that runs new parameters, or let it stand, step or say what it does."""
+"""``sarah-push``: give new parameters to a robot that runs, or let it stand, step or say what it does."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ class PushOptions:
     """Push new parameters to a robot that runs with ``sarah-robot --listen``.
 
     They are applied when its legs swap, or at once while it stands. The command waits until the robot has stepped with
-    them for five seconds, or the supervisor has put back those before.
+    them for five seconds, or until the supervisor has put back the old ones.
 
     :param subject: run folder; numbers separated by commas, P1 to P5, V1 to V4 or all nine; or the name of shipped
         parameters: ``paper``, ``stepping`` or ``balance``. Parameters that it does not have stay

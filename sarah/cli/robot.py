@@ -59,15 +59,15 @@ ANYWHERE = 20.0
 class RobotOptions(EpisodeOptions):
     """Run the controller on a robot: tick by tick, with a supervisor that stops it when something fails.
 
-    Without --driver the robot is simulated. It may go where it wants, and nobody pushes it, unless options say
-    otherwise. With --listen it goes on where an episode would end, and is put up two seconds after a fall. Ctrl-C lets
-    it stop and stand, and a second one ends at once.
+    Without --driver the robot is simulated. It may leave its place, and is not pushed, unless options say otherwise.
+    With --listen it goes on where an episode would end, and is set upright two seconds after a fall. Ctrl-C lets it
+    stop and stand; a second Ctrl-C ends at once.
 
     :param subject: run folder; numbers separated by commas, P1 to P5 for stepping, or V1 to V4 for the task balance; or
         the name of shipped parameters: ``paper``, ``stepping`` or ``balance``
     :param driver: file of a robot's driver and its name in there, such as my_robot.py:ROBOT. The file is run
-    :param seconds: time for which it runs, with the second of standing, in s; by default until Ctrl-C, or the end of
-        the simulated episode, which one that listens does not have
+    :param seconds: time for which it runs, the second of standing included, in s; by default until Ctrl-C or, without
+        --listen, until the simulated episode ends
     :param real_time: whether a tick begins each control period by the clock; without it, ticks follow each other as
         fast as they can
     :param stand: whether the robot only stands

@@ -1,4 +1,4 @@
-"""The tables that commands print and leave in a folder: what of before is replaced is said before the work."""
+"""The tables that commands print and leave in a folder. Which older files they replace is said before the work."""
 
 from __future__ import annotations
 

@@ -57,10 +57,10 @@ class TrainOptions:
 
     Most robots survive the paper's pushes without learning. So by default --task balance pushes harder, in shorter
     episodes. The paper's settings, for its robot of 30 kg, are --episode.push.newtons 0 100
-    --episode.push.sagittal-share 0 --episode.time-limit 30, and those of a file of --config that names no others,
+    --episode.push.sagittal-share 0 --episode.time-limit 30. A file of --config that names no others has these too,
     unless --from is given.
 
-    With --offline and logs it learns from these instead, without simulation: sarah-train --offline --help.
+    With --offline it learns from logs instead, without simulation: see sarah-train --offline --help.
 
     :param training: settings of the training
     :param out: run folder to write, new or empty; by default a new one, runs/<task>/<algo>-s<seed>

@@ -2,9 +2,10 @@
 
     corrected = signal - baseline
 
-While the robot stands, a baseline is the mean of all finite readings so far; once it steps, a low-pass of some
-seconds, slow beside steps and falls. Without it, an inertial measurement unit mounted 4 degrees askew reads 0.7 m/s^2
-to the side. The hip law would hold that for a push, and the pattern generator would wait for a tilt that never comes.
+While the robot stands, a baseline is the mean of all finite readings so far; once it steps, it follows by a low-pass of
+some seconds, which is slower than steps and falls. Without it, an inertial measurement unit mounted 4 degrees askew
+reads 0.7 m/s^2 to the side. The hip law would hold that for a push, and the pattern generator would wait for a tilt
+that never comes.
 """
 
 from __future__ import annotations

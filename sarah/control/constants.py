@@ -14,7 +14,7 @@ class ControllerConstants:
     """Time-outs, gains, time constants and lengths of the pattern generator and the hip law. All are reconstructed.
 
     :param baseline_time_constant: time constant of the slow baselines that are subtracted from the lateral acceleration
-        and the rates about x and y, in s: long beside a step and a fall, short beside a sensor's drift
+        and the rates about x and y, in s: longer than a step or a fall, shorter than a sensor's drift
     :param minimum_phase_seconds: shortest duration of a phase, in s
     :param time_out_seconds: shortest time-out of a phase, in s; P4 and P5 stretch it, by the factor 1 + P4 or 1 + P5
     :param landing_rate: rate of rocking back that P1 = 1 waits for before LIFT ends, in rad/s
@@ -24,7 +24,7 @@ class ControllerConstants:
     :param leg_speed: speed of the ramp that leg length targets follow, in m/s
     :param tilt_time_constant: time constant of the tilt's low-pass, in s
     :param rate_time_constant: time constant of the rate's low-pass, in s
-    :param abduction_tilt: tilt that counts for each radian of the hip law's abduction without its constant, in m/s^2
+    :param abduction_tilt: tilt that each radian of the hip law's abduction counts as, V2's constant left out, in m/s^2
     :param abduction_rate_share: share of the abduction's rate that is added to the rate about y
     :param largest_acceleration: limit to which the lateral acceleration is clipped before all filters, in m/s^2
     :param abduction_scale: abduction per lateral acceleration at V1 = 1, in rad per m/s^2
@@ -35,24 +35,24 @@ class ControllerConstants:
     :param lean_time_constant: time constant of the leaky integral of a rate that belongs to a lean, in s: longer than a
         fall, and short enough to forget an error of the gyroscope
     :param fall_time_constant: time constant of the low-passes of a lean's rate and of the fall, in s
-    :param fall_rate: rate at which a fall over a foot grows, in 1/s; a rate of leaning counts divided by it
+    :param fall_rate: rate at which a fall over a foot grows, in 1/s; the rate of a lean is divided by it
     :param fall_dead_band: fall below which the flexion does not react, in rad
     :param largest_servo_error: difference of a hip joint's position from its target beyond which it is not believed, in
         rad: more than a servo gives way under a robot that steps or is pushed
     :param capture_gain: flexion of an unloaded leg against the fall at V3 = 1, in rad per rad
     :param spread_gain: angle by which either leg spreads for the lean outward at V1 = 1, in rad per rad
-    :param spread_dead_band: lean outward below which the legs do not spread, in rad: more than steps lean if
-        V1 is near 1
+    :param spread_dead_band: lean outward below which the legs do not spread, in rad: more than the robot leans while it
+        steps with a V1 near 1
     :param spread_speed: speed at which the legs spread, in rad/s
-    :param spread_return_speed: speed at which they close again, in rad/s: a quick return would tip the robot over
+    :param spread_return_speed: speed at which the legs close again, in rad/s: a quick return would tip the robot over
     :param pad_threshold: sum of a foot's two pads above which it counts as loaded, in N; a leg with less is free to
         flex against the fall
     :param largest_rate: limit to which rates about x and y are clipped before all filters, in rad/s
     :param balance_ramp: speed at which V1 to V4 move to new values while the robot steps, per second
     :param largest_blow: limit to which the vertical acceleration is clipped before it is low-passed, in m/s^2: as much
-        as feet that land cause, because what is clipped on one side only would count as leaning
-    :param upright_time_constant: time constant of the low-pass of the vertical acceleration that recognises a fall,
-        in s: long beside a step, in which the acceleration swings about that of gravity
+        as landing feet cause; a lower limit would clip one side only, and look like a lean
+    :param upright_time_constant: time constant of the low-pass of the vertical acceleration that recognises a fall, in
+        s: longer than a step, in which the acceleration swings about that of gravity
     :param least_upright: low-passed vertical acceleration of the torso below which the robot has fallen, in m/s^2
     """
 

@@ -1,4 +1,4 @@
-"""Whether a reading is a new one. Who reads the same again, or nothing, does not hear the robot."""
+"""Whether a reading is a new one. A controller that reads the same again, or nothing, does not hear the robot."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ class PatternGenerator:
 
     It stands for its first second, in which it learns the baselines of its sensors, and then steps; a gap between two
     readings prolongs that second. A signal that is not finite keeps its last value. Once the robot has fallen, the
-    targets stay where they are for good; a robot that has been put up again stands, and needs a new generator.
+    targets stay where they are for good. A robot that has been set upright stands, and needs a new generator.
 
     :param parameters: values of P1 to P5
     :param balance: values of V1 to V4; zeros lock the hips, as in the First Training

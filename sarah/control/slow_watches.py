@@ -1,6 +1,6 @@
 """Watches that look ten times a second: hip servos, tilt, and signals that contradict each other.
 
-They look at the means of the ticks since. Looking in every tick would cost more than the controller.
+They look at the means of the ticks since the last look. Looking in every tick would cost more than the controller.
 """
 
 from __future__ import annotations

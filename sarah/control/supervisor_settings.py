@@ -14,22 +14,23 @@ class SupervisorSettings:
     """Settings of a supervisor: from when on something is a fault.
 
     :param enabled: whether a supervisor watches, and stops the robot when something fails
-    :param stale_seconds: age from which a reading counts as missing, and time without a new one after which the robot
-        stands until there is one again, in s
-    :param lost_seconds: time without any inertial signal, or with all of them the same, after which the robot stops, in
-        s
-    :param signal_seconds: time without one of them, or with one that stays the same, after which it stops, in s
-    :param stepless_seconds: time without a step after which it stops, in s
+    :param stale_seconds: age from which a reading counts as missing, in s; after as long without a new one the robot
+        stands until one comes
+    :param lost_seconds: time for which all inertial signals may be missing, or stay the same, before the robot stops,
+        in s
+    :param signal_seconds: time for which one inertial signal may be missing, or stay the same, before the robot stops,
+        in s
+    :param stepless_seconds: time without a step after which the robot stops, in s
     :param largest_tilt: tilt of the torso from which the robot counts as fallen, in rad; robots come back from less
     :param largest_servo_error: mean distance of a hip joint from its target beyond which its servo does not follow, in
         rad
-    :param servo_seconds: time constant of that mean, in s
+    :param servo_seconds: time constant of the mean distance of a hip joint from its target, in s
     :param lean_seconds: time constant with which the torso's tilt follows the accelerometer, in s
-    :param largest_contradiction: difference between the mean rate about x and that of the lean that the accelerometer
-        shows, over twice that time, from which one of them is wrong, in rad/s
-    :param least_rocking: rate about y, as a root mean square over that time, below which the gyroscope does not feel
-        the rocking that the pads show, in rad/s
-    :param largest_lateness: time that ticks may come late, in control periods, as a mean over the last hundred or so
+    :param largest_contradiction: largest difference between the mean rate about x and the change of the accelerometer's
+        lean, over twice lean_seconds, in rad/s; beyond it one of the two is wrong
+    :param least_rocking: smallest root mean square of the rate about y over lean_seconds, while the pads show rocking,
+        in rad/s; below it the gyroscope does not feel the rocking
+    :param largest_lateness: largest mean delay of the last hundred ticks or so, in control periods
     """
 
     enabled: bool = False

@@ -55,7 +55,8 @@ class SimulatedRobot(Driver):
     :param plan: fault, and when it begins
     :param is_lockstep: whether time passes with the readings alone
     :param record_trace: whether to record every control tick after standing in a trace
-    :param goes_on: whether it goes on where an episode would end: after a fall it is put up, and nothing is recorded
+    :param goes_on: whether it goes on where an episode would end: after a fall it is set upright, and nothing is
+        recorded
     """
 
     def __init__(

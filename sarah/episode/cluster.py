@@ -1,4 +1,4 @@
-"""Worker processes of Dask, on this machine or behind a scheduler. Every outcome says with what it was computed."""
+"""Worker processes of Dask, here or behind a scheduler. Every outcome says which code and versions computed it."""
 
 from __future__ import annotations
 

@@ -38,11 +38,11 @@ class Push:
 
     It acts horizontally on the torso's centre, with constant force.
 
-    :param newtons: uniform range of the force, in N; the paper pushed its 30 kg with up to 100 N
+    :param newtons: uniform range of the force, in N; the paper pushed its robot of 30 kg with up to 100 N
     :param degrees: uniform range of the direction, in degrees: 0 pushes to the robot's right, 90 forward
-    :param at_seconds: uniform range of the simulated time at which it begins, in s; the paper pushed after the first
-        second
-    :param duration: duration, in s
+    :param at_seconds: uniform range of the simulated time at which the push begins, in s; the paper pushed after the
+        first second
+    :param duration: duration of the push, in s
     :param sagittal_share: share of the pushes that point within 30 degrees of forward or backward, half of them each
         way, instead of anywhere in the range of directions
     """

@@ -1,4 +1,4 @@
-"""The recording of a robot that runs: everything that the result of an episode says of it."""
+"""The recording of a robot that runs: everything that an episode's result says about it."""
 
 from __future__ import annotations
 

@@ -44,7 +44,7 @@ class RobotSettings:
     :param randomisation: ranges that each episode's seed draws from
     :param terrain: ground, drawn from each episode's seed as well
     :param controller: constants of the pattern generator and the hip law
-    :param supervisor: from when on the robot stops by itself because something fails
+    :param supervisor: settings that decide when the robot stops by itself because something fails
     :param payload: extra mass in the torso, in kg, distributed like the torso's own mass
     :param dimensions: dimensions of the robot that differ from their defaults: values by name in SI units, such as
         hinge_height 0.04

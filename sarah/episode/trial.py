@@ -1,4 +1,4 @@
-"""The trial of a task of a file: its mistakes are found before a training begins."""
+"""The trial of a task from a file, which finds its mistakes before a training begins."""
 
 from __future__ import annotations
 

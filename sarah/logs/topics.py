@@ -44,6 +44,15 @@ _SIGNALS = 16
 """Number of the last fields of a tick, which are those of its reading."""
 _DECIDED_NAMES = tuple(field.name for field in _TICK_FIELDS[:-_SIGNALS])
 _SIGNAL_NAMES = tuple(field.name for field in _TICK_FIELDS[-_SIGNALS:])
+_FELT_MEANINGS = {
+    "mean": "mean of {}",
+    "deviation": "standard deviation of {}",
+    "seconds": "mean duration of {}",
+    "lag": "mean distance of {} from its target",
+    "load": "mean load on the pads of the {} foot",
+    "second": "steps per second",
+}
+"""Meaning of what the robot felt, by the last word of its name; the words before it take the place of the braces."""
 _PARAMETER_FIELDS = tuple(Field(one.name, one.meaning, one.unit) for one in PARAMETERS)
 
 
@@ -100,6 +109,12 @@ def _window(seconds: float, window: Mapping[str, Any]) -> Values:
     return {"seconds": seconds, **times, "fell": False, **others, **dict(parameters), **dict(felt)}
 
 
+def _meaning(felt: str) -> str:
+    """Meaning of what the robot felt, from its name."""
+    subject, _, what = felt.rpartition("_")
+    return _FELT_MEANINGS[what].format(subject)
+
+
 def _parameters(
     seconds: float, values: Mapping[str, float], asked_seconds: float, by: str, accepted: bool, reason: str
 ) -> Values:
@@ -139,7 +154,7 @@ WINDOWS = Topic(
     (
         SECONDS,
         Field("begin", "time at which the window began", "s"),
-        Field("duration", "time that it took, with standing before it and putting up after it", "s"),
+        Field("duration", "time that it took, with standing before it and setting upright after it", "s"),
         Field("index", "number of the window, from 0"),
         Field("changes", "number of changes that had been made to robot and world"),
         Field("observed_reward", "reward as the robot's own sensors tell it; 1 is the best"),
@@ -147,7 +162,7 @@ WINDOWS = Topic(
         Field("fell", "whether the robot fell, which ended the window", kind="boolean"),
         *_PARAMETER_FIELDS,
         *(
-            Field(f"felt_{name}", f"{name.replace('_', ' ')} in the window", unit)
+            Field(f"felt_{name}", f"{_meaning(name)} in the window", unit)
             for name, (_, unit) in zip(FELT, FELT_SIZES, strict=True)
         ),
     ),

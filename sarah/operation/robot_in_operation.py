@@ -28,7 +28,7 @@ class RobotInOperation(OperatedRobot):
     """A simulated robot in operation. What it does follows from settings, seed and parameters.
 
     It is the same robot all the time: its masses, friction and sensor errors are drawn once. Its sensor noise is new
-    each time that it is put up.
+    each time that it is set upright.
 
     :param config: settings of the operation
     :param seed: seed of robot, world, noise and pushes

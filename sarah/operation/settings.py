@@ -39,7 +39,7 @@ SOFT_PUSHES = Push(newtons=(0.0, 50.0))
 
 @dataclass(frozen=True)
 class Change:
-    """Something about the robot or its world that is different from a time on.
+    """A change of the robot or its world at some time.
 
     :param minute: time of operation from which it is so, in min; it begins with the next window, from standing
     :param settings: settings of the episode that change, by name, as in a config.yaml

@@ -37,7 +37,7 @@ class Window:
 
     :param index: number of the window, from 0
     :param begin: time of operation at which it began, in s
-    :param seconds: time that it took, in s, with standing before it and putting up after it
+    :param seconds: time that it took, in s, with standing before it and setting upright after it
     :param changes: number of changes that had been made to robot and world
     :param parameters: P1 to P5 and V1 to V4
     :param score: equation 2 over its ceiling, by the torso's true motion since the measurement began; 1 is the best.

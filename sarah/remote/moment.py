@@ -1,4 +1,4 @@
-"""A tick of a control loop, as those see it who ask the robot for something."""
+"""A tick of a control loop, as it matters to requests from outside."""
 
 from __future__ import annotations
 

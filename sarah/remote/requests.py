@@ -1,4 +1,4 @@
-"""What a robot is asked from outside, as JSON, and every check that needs no robot that steps.
+"""What a robot is asked from outside, as JSON, and every check that needs no running robot.
 
 ``request.schema.json`` beside this file describes the same for other programs.
 """

@@ -3,8 +3,8 @@
 Final recommendations are judged by many episodes, those along the way by the first of them. Each is compared with the
 best known score in the episodes that judge it.
 
-A race knows recommendations after every five episodes only. So all counts of episodes are ones at which there was a
-recommendation, also the median of an even number of trainings, which is the higher one of the two in the middle.
+A race knows recommendations after every five episodes only, so all counts of episodes are ones with a recommendation.
+For an even number of trainings the median is the higher one of the two in the middle.
 """
 
 from __future__ import annotations

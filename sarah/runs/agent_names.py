@@ -1,4 +1,4 @@
-"""What to say of a name that an algorithm's settings lack: what they call the same, and which algorithms have it."""
+"""Hints for a name that an algorithm's settings lack: what they call it, and which algorithms have it."""
 
 from __future__ import annotations
 

@@ -117,7 +117,7 @@ class NAFSettings(LearnerSettings):
     :param smoothed: smoothing of the returns over similar actions, by a Gaussian process of the newest 500 episodes
     :param elite_share: share of the actions that are drawn around the best one so far instead of around mu
     :param elite_std: standard deviation of these draws: at first, and when they are narrowest
-    :param elite_end: share of the training after which they are
+    :param elite_end: share of the training after which these draws are narrowest
     :param elite_draws: number of draws, of which the most promising is tried
     :param v_layers: widths of the hidden layers of V
     :param mu_layers: widths of the hidden layers of mu

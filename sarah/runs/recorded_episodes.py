@@ -51,7 +51,7 @@ _KINDS: dict[Callable[..., Any], _Kind] = {
 
 
 class RecordedEpisodes(Executor):
-    """Who simulates the episodes of a training that its journal does not know.
+    """Simulates the episodes of a training that its journal does not know.
 
     :param journal: journal of the training
     :param executor: executor that simulates

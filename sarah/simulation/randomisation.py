@@ -25,10 +25,10 @@ but a sole that does not slide does not feel that."""
 class Randomisation:
     """Uncertain properties of the robot and its world, drawn for each episode from its seed.
 
-    Parameters learned on one exact robot exploit it, so they must hold under a little of everything: under errors that
-    are constant in an episode, as a sensor mounted askew, and under noise. The values are reconstructed, as the paper
-    gives none; those of sensors are what datasheets of small inertial units and load cells promise, before calibration.
-    A pair is a uniform range; one number, or equal ends, fix the value.
+    Parameters learned on one exact robot exploit it. So they must hold under a little of everything: under errors that
+    stay the same in an episode, such as a sensor mounted askew, and under noise. The values are reconstructed, as the
+    paper gives none; those of sensors are what datasheets of small inertial units and load cells promise, before
+    calibration. A pair is a uniform range; one number, or equal ends, fix the value.
 
     :param enabled: whether to randomise; if not, the robot is as designed, with the quickest servos of the range, and
         the seed draws push and terrain only

@@ -1,4 +1,4 @@
-"""stable-baselines3's algorithms, which begin as NAF does, so that a comparison is one of what they learn.
+"""stable-baselines3's algorithms, which begin as NAF does, so that only what they learn is compared.
 
 Their warm-up is uniform: stable-baselines3 adds the action noise to it, so that many actions lie on a bound. On tasks
 with neutral parameters the first action is the centre of the action space. A saved model is that of the plain

@@ -1,4 +1,4 @@
-"""Searches without a model of the robot, which many would take for a few numbers and costly tries.
+"""Searches without a model of the robot, the usual choices for a few numbers and costly tries.
 
 All follow the protocol of :mod:`sarah.training.search`. They scale parameters to [-1, 1].
 """

@@ -4,8 +4,8 @@ An agent's own choice tends to stop at the edge of a plateau, and the best singl
 does not show a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here
 than its score. For all algorithms, therefore, parameters are judged by the merit that a Gaussian process expects,
 without the part that known disturbances explain. Its maximum is looked for in the whole box of the parameters. The last
-episodes of a budget try it, and then the best of what was simulated elsewhere: where the process errs, one of both is
-good. Their gait must be valid, and their hips must not chatter.
+episodes of a budget try it, and then the best of what was simulated elsewhere: where the process errs, one of the two
+is good. Their gait must be valid, and their hips must not chatter.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """The protocol of a search: it is asked for parameters to try, and told what they were worth.
 
-A training asks for episodes, of which several are in flight, and tells the returns, without what known disturbances
-explain of them, in the order in which it asked. A session asks for one window of a robot in operation after the other;
+A training asks for episodes, of which several are in flight. It tells their returns in the order in which it asked,
+without the part that known disturbances explain. A session asks for one window of a robot in operation after the other;
 it says how many are left, and whether the robot fell. It uses nothing else that the robot knows, and no score.
 """
 
