@@ -271,8 +271,8 @@ class NAF(OffPolicyAlgorithm):
         mean_loss = th.stack(losses).mean().item()
         if not math.isfinite(mean_loss):
             raise ValueError(
-                f"the loss is {mean_loss}, and the agent is lost: an observation or a reward is no number, or by far "
-                "too large. VecCheckNan of stable-baselines3, with raise_exception=True, finds what is no number"
+                f"the loss is {mean_loss}, and the agent is lost: an observation or a reward is not a number, or far "
+                "too large. VecCheckNan of stable-baselines3, with raise_exception=True, finds what is not a number"
             )
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
         self.logger.record("train/loss", mean_loss)

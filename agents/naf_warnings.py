@@ -45,8 +45,8 @@ def reward_warning(rewards: np.ndarray) -> str | None:
         side, remedy = ("below", f"reward + {-mean:.3g}") if mean < 0 else ("above", f"reward - {mean:.3g}")
         return (
             f"rewards of {mean:.3g} on average are far {side} 0, and mu learns from them slowly or not at all. "
-            f"Remedy: take their mean off in the environment, as {remedy}; or scale them, if it is for "
-            "the agent to end the episode"
+            f"Remedy: subtract their mean in the environment, as {remedy}; or scale them, if the agent "
+            "can end the episode"
         )
     if std > LARGE_DEVIATION:
         return (

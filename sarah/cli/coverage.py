@@ -33,7 +33,7 @@ def coverage_lines(paths: Sequence[Path]) -> Iterator[str]:
     shared = sum(count > 1 for count in seen.values())
     yield "shipped: windows with the shipped parameters, by which robots are recognised"
     yield f"{len(seen)} sets in all, {shared} of them on more than one robot: only these compare robots"
-    yield "what a set is worth on a robot that never ran it, no log can tell"
+    yield "no log can tell what a set is worth on a robot that never ran it"
 
 
 def names_shown(names: Sequence[str]) -> list[str]:

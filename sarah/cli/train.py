@@ -181,7 +181,7 @@ def _extended(run: RunFolder, config: TrainingConfig) -> TrainingConfig:
     added = extended.episodes - before.episodes
     print(
         f"extending {before.episodes} to {extended.episodes} episodes: what changes in the course of a training, such "
-        f"as NAF's exploration, is from now on as in the last {added} of {extended.episodes} episodes"
+        f"as NAF's exploration, goes on as in the last {added} of {extended.episodes} episodes"
     )
     return extended
 

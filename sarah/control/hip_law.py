@@ -42,7 +42,7 @@ class BalanceParameters:
     """The four parameters of the Second Training, each within -2 and 2; zeros lock the hips.
 
     :param V1: gain from the lateral acceleration to the abduction of both hips, and from tipping over to their spread
-    :param V2: constant added to that acceleration, in m/s^2
+    :param V2: constant added to the lateral acceleration, in m/s^2
     :param V3: gain from a fall forward or backward to the step of a leg in the air
     :param V4: constant flexion of both legs, in units of 0.02 rad
     """

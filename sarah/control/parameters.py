@@ -142,7 +142,12 @@ STEPPING_PARAMETERS = (
     Parameter("P1", 0.0, 2.0, "rad/s", "rate of rocking back at which the swing foot is put down", "about 0.4"),
     Parameter("P2", 0.0, 2.0, "m/s²", "tilt over the stance leg at which the swing foot may leave", "1.3"),
     Parameter(
-        "P3", 0.0, 2.0, "rad/s", "a hundred times the rate over the stance leg at which it may leave", "about 0.1"
+        "P3",
+        0.0,
+        2.0,
+        "rad/s",
+        "a hundred times the rate towards the stance leg at which the swing foot may leave",
+        "about 0.1",
     ),
     Parameter("P4", 0.0, 2.0, "", "longer time-out of LIFT, by the factor 1 + P4", "hardly matters"),
     Parameter("P5", 0.0, 2.0, "", "longer time-outs of SHIFT and LAND, by the factor 1 + P5", "hardly matters"),
@@ -152,7 +157,7 @@ BALANCE_PARAMETERS = (
     Parameter(
         "V1", -2.0, 2.0, "", "gain from lateral acceleration to abduction, and from tipping over to spread", MATTERS
     ),
-    Parameter("V2", -2.0, 2.0, "m/s²", "constant added to that acceleration", CONSTANT),
+    Parameter("V2", -2.0, 2.0, "m/s²", "constant added to the lateral acceleration", CONSTANT),
     Parameter("V3", -2.0, 2.0, "", "gain from a fall forward or backward to the step of a leg in the air", MATTERS),
     Parameter("V4", -2.0, 2.0, "", "constant flexion of both legs, in units of 0.02 rad", CONSTANT),
 )

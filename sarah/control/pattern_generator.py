@@ -73,7 +73,7 @@ class SteppingParameters:
 
     :param P1: rate of rocking back at which the swing foot is put down, in rad/s
     :param P2: tilt (lateral acceleration) over the stance leg at which the swing foot may leave, in m/s^2
-    :param P3: a hundred times the rate towards the stance leg at which it may leave, in rad/s
+    :param P3: a hundred times the rate towards the stance leg at which the swing foot may leave, in rad/s
     :param P4: longer time-out of LIFT, by the factor 1 + P4
     :param P5: longer time-outs of SHIFT and LAND, by the factor 1 + P5
     """

@@ -24,7 +24,7 @@ from sarah.episode.tasks import Task
 from sarah.robot.reading import ACTUATED_JOINTS, SensorReading, Targets, Vector
 
 LIES_SECONDS = 2.0
-"""Time for which a robot that goes on lies before it is put up, in s: its supervisor has noticed by then."""
+"""Time for which a robot that goes on lies before it is set upright, in s: its supervisor has noticed by then."""
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ def physics_warning(task: Task[Any], parameters: tuple[float, ...], config: Epis
     is_coarse = config.engine == "pybullet" and config.physics.rate < PHYSICS["reference"].at_scale(config.scale).rate
     is_late = config.randomisation.enabled and config.randomisation.delay_seconds >= LATE_SECONDS
     if is_coarse and stepping.P1 < LOW_P1 and (is_late or hips_move):
-        return f"P1 below {LOW_P1:g} can score far off here: check it with --physics reference"
+        return f"with P1 below {LOW_P1:g} the score can be far off here: check it with --physics reference"
     if config.engine == "pybullet" and config.terrain.roughness[1] > 0.0 and config.physics.rate < LOWEST_ROUGH_RATE:
         return f"below {LOWEST_ROUGH_RATE} Hz PyBullet's feet sink into bumps: take more steps per second"
     if config.engine == "pybullet" and _foot_share(config) < LIGHT_FOOT:

@@ -158,11 +158,11 @@ def conditions_of(config: RobotSettings, seed: int) -> Conditions:
 
 
 def conditions_put_up(config: RobotSettings, seed: int, times: int) -> Conditions:
-    """Draw robot and world of one that is put up again and again: only the noise of its sensors is new each time.
+    """Draw robot and world of one that is set upright again and again: only the noise of its sensors is new each time.
 
     :param config: settings of robot and world
     :param seed: seed of both
-    :param times: number of times that it was put up before
+    :param times: number of times that it was set upright before
     """
     conditions = conditions_of(config, seed)
     noise = random.Random(f"noise {seed} {times}").getrandbits(64)

@@ -8,7 +8,7 @@ from sarah.drivers.loop import ControlLoop, LoopTick
 from sarah.logs.robot_log import RobotLog
 from sarah.robot.reading import SensorReading
 
-REASONS = {"standing": "put up", "stepping": "stood for a second", "fallen": "lay down"}
+REASONS = {"standing": "set upright", "stepping": "stood for a second", "fallen": "lay down"}
 """Reasons for the states of a robot that has no supervisor."""
 
 

@@ -39,7 +39,7 @@ LEAK_SECONDS = 2.0
 BIAS_TICKS = 100
 """Number of readings at the beginning whose mean angular rate is taken for an error."""
 LONGEST_GAP = 0.5
-"""Time between two ticks beyond which the robot has been put up anew, in s."""
+"""Time between two ticks beyond which the robot has been set upright, in s."""
 END = "end_of_log"
 """Way in which a log ends."""
 

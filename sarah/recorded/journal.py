@@ -107,7 +107,7 @@ class Journal:
         try:
             return read(row["outcome"])
         except (ValueError, TypeError, LookupError, ArithmeticError, AttributeError, SarahError, RecursionError):
-            _log.warning("%s: damaged rows: 1; what it has is asked again", self._path)
+            _log.warning("%s: damaged rows: 1; what it has is asked for again", self._path)
             return None
 
     def add(self, request: Mapping[str, Any], outcome: Any) -> None:
@@ -193,7 +193,7 @@ class Journal:
                 self._known[row["index"]] = row
         if damaged:
             self._file.truncate(whole)  # a row that was cut has no end
-            _log.warning("%s: damaged rows: %d; what they have is asked again", self._path, damaged)
+            _log.warning("%s: damaged rows: %d; what they have is asked for again", self._path, damaged)
 
     def _checksum(self, text: bytes) -> bytes:
         """What signs a row but the first."""

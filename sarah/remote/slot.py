@@ -268,7 +268,7 @@ class Slot:
         truth = None if self._meter is None else self._meter.truth
         lies = truth is not None and truth.has_fallen
         if lies or (supervisor.has_fallen and self._upright_ticks < self._upright_needed):
-            return "the robot has fallen: it goes on when somebody has put it up"
+            return "the robot has fallen: it goes on when somebody has set it upright"
         return ""
 
     def _begin_window(self, asked: Asked, moment: Moment, since: float) -> None:

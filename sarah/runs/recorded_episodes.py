@@ -32,10 +32,10 @@ def _result(plain: Any) -> EpisodeResult:
     x, y, z = plain["final_position"]
     termination = plain["termination"]
     if not is_ending(termination):
-        raise ValueError("the way in which an episode ended is no name")
+        raise ValueError("the way in which an episode ended is not a name")
     numbers = {name: value for name, value in plain.items() if name not in ("termination", "final_position")}
     if any(type(value) not in (int, float) for value in (x, y, z, *numbers.values())):
-        raise TypeError("a number of an episode is none")
+        raise TypeError("a value of an episode is not a number")
     return EpisodeResult(termination=termination, final_position=(x, y, z), **numbers)
 
 

@@ -80,7 +80,7 @@ def test_a_file_configures_it_and_options_go_before(begun: Begin) -> None:
 def test_a_finished_training_goes_on_if_it_is_made_longer(tmp_path: Path) -> None:
     done("sarah-train", "--algo", "random", "--simulations=2", "--out", "mine", *SHORT, cwd=tmp_path)
     more = done("sarah-train", "--resume", "mine", "--simulations", "3", cwd=tmp_path)
-    said = "extending 2 to 3 episodes: what changes in the course of a training, such as NAF's exploration, is from now"
+    said = "extending 2 to 3 episodes: what changes in the course of a training, such as NAF's exploration, goes"
     assert f"{said} on as in the last 1 of 3 episodes\nresuming the training of random on stepping: 3" in more.stdout
     assert len(list(RunFolder.open(tmp_path / "mine").episodes())) == 3
 

@@ -57,7 +57,7 @@ def test_an_episodes_log_agrees_with_trace_and_leaves_the_result(tmp_path: Path)
     assert summary.steps == known.steps and summary.parameters[0]["seconds"] == 1.0
     assert [summary.parameters[0][one.name] for one in PARAMETERS] == list(SHIPPED)
     states = [(one["seconds"], one["state"], one["reason"]) for one in summary.states]
-    assert states[:2] == [(0.0, "standing", "put up"), (1.0, "stepping", "stood for a second")]
+    assert states[:2] == [(0.0, "standing", "set upright"), (1.0, "stepping", "stood for a second")]
     assert states[2] == (2.5, "ended", "ran to the end")
 
 

@@ -85,7 +85,7 @@ def test_a_damaged_row_costs_its_simulation_only(whole: RunFolder, tmp_path: Pat
     counting = Counting()
     begun = begun_with(tmp_path / "damaged", whole, b"".join(lines))
     train(whole.config(), begun, counting)
-    assert counting.run == 1 and "damaged rows: 1; what they have is asked again" in caplog.text
+    assert counting.run == 1 and "damaged rows: 1; what they have is asked for again" in caplog.text
     assert left_behind(begun.path) == left_behind(whole.path)
 
 
