@@ -69,10 +69,10 @@ class RankReplayBuffer(ReplayBuffer):
     where ``rank`` is that of its reward in the buffer, from 0 (lowest) to 1 (highest), mean rank for ties.
     Transitions of all environments are ranked together.
 
-    It is meant for episodes of one step, where the reward is the return. In longer episodes it would
-    favour transitions of high reward whatever they lead to, so ``gamma`` must be 0. It favours lucky ones, too:
-    noise makes what is learned from it too high. The probabilities are computed at the first draw after an
-    addition, in O(n log n). The best action is looked for among the newest 10,000 transitions.
+    It is meant for episodes of one step, where the reward is the return. In longer episodes it would favour transitions
+    of high reward whatever they lead to, so ``gamma`` must be 0. It favours lucky transitions, too: noise makes the
+    values that are learned from it too high. The probabilities are computed at the first draw after an addition, in O(n
+    log n). The best action is looked for among the newest 10,000 transitions.
 
     An environment of one step can say what luck an episode had: ``info["disturbances"]`` holds the numbers that its
     return depended on and its action did not choose, as many in every episode. Then ranks and sampled rewards are

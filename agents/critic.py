@@ -67,8 +67,8 @@ class QuadraticCritic(BaseModel):
     which has many outputs, learns noise by heart, and that makes it steep:
 
     - Those layers have a second output: ``W``, the mean of what actions near ``mu`` led to. It has a loss of its own,
-      and targets take it of the next state. ``V`` lies above what was done by what the parabola promises, so targets
-      with ``V`` add up promises over the horizon.
+      and targets take it of the next state. ``V`` lies above the value of what was done, by what the parabola promises.
+      Targets with ``V`` would add up these promises over the horizon.
     - Hidden layers of ``mu`` and ``L`` have dropout before their activation, as those of critics in DroQ (Hiraoka et
       al. 2022, https://arxiv.org/abs/2110.02034).
     - The first layer of ``V`` and ``W`` is normalised, as those of critics in RLPD (Ball et al. 2023,

@@ -89,7 +89,7 @@ class Watch:
     :param updates: Number of updates
     :param seconds: Time that the first of them took
     :param value_bound: Value of the largest reward so far, whatever its sign, if it came at every step
-    :param value_ceiling: The same of the highest, or 0 where all are negative, as an episode may end
+    :param value_ceiling: The same for the highest reward, or 0 where all are negative, because an episode may end
     :param warned_of_values: Whether ``V`` was said to run away
     :param judged_rewards: Whether the first rewards were judged
     """

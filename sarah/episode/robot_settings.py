@@ -34,8 +34,8 @@ SettingsType = TypeVar("SettingsType")
 class RobotSettings:
     """Settings of a robot and its world, and of how long an episode is.
 
-    What goes with the length and the mass of a robot is by default that of the default robot, scaled
-    (:mod:`sarah.robot.scale`); what is given is taken as it is.
+    What depends on the length and the mass of a robot is by default that of the default robot, scaled
+    (:mod:`sarah.robot.scale`). What is given is taken as it is.
 
     :param physics: resolution of the physics in time; in files and in Python, fields that the engine does not have are
         ignored

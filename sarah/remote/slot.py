@@ -71,7 +71,7 @@ class Slot:
 
     They are applied in the tick in which a step begins, or at once while the robot stands or has fallen. In the first
     second they wait, because the loop gives the robot its own parameters at the end of it. A window that somebody asked
-    for then runs; it lets a robot step that has stopped by itself, but none that somebody asked to stand.
+    for then runs; it lets a robot step again that has stopped by itself, but not one that somebody asked to stand.
 
     :param dt: control period, in s
     :param largest_change: largest change of a parameter, as a share of its range

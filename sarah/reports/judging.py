@@ -1,7 +1,7 @@
 """How many unseen episodes judge a recommendation.
 
 All trainings of a race meet the same episodes, whose seeds begin at 0, so that the luck of an episode is shared. The
-first few of those that judge final recommendations judge the many along the way.
+first few of the episodes that judge final recommendations also judge those along the way.
 """
 
 from __future__ import annotations

@@ -1,8 +1,8 @@
 """The robot: from the xacro to a checked URDF text.
 
 PyBullet crashes on some malformed URDFs and silently accepts others. So every text is checked here before an engine
-sees it: yourdfpy checks the syntax, and this module's own rules check that the robot is SARAH. The default robot is
-shown to yourdfpy by a test alone, because importing yourdfpy takes longer than many an episode.
+sees it: yourdfpy checks the syntax, and this module's own rules check that the robot is SARAH. Only a test shows the
+default robot to yourdfpy, because importing yourdfpy takes longer than a short episode.
 """
 
 from __future__ import annotations
