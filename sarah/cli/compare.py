@@ -45,10 +45,10 @@ class CompareOptions:
     it over three evaluations: a multiple of five, or "not reached". The command prints the table, and writes it to the
     folder with a plot. The same command continues a race that was interrupted.
 
-    Judging takes longer than learning. With a push, {pushed_final} episodes judge the end of a training, and the first
-    {pushed_along} of them judge after every five of its episodes; without a push it is {still_final} and {still_along}.
-    A recommendation that comes again is judged once. Before it starts, the command says how many episodes it will
-    simulate.
+    Judging takes longer than learning. With a push, {pushed_final} episodes judge the end of a training, and
+    the first {pushed_along} of them judge after every five of its episodes. Without a push these
+    numbers are {still_final} and {still_along}. A recommendation that comes again is judged once. Before it starts, the
+    command says how many episodes it will simulate.
 
     :param out: folder of the race, which also holds its run folders
     :param algorithms: names of different algorithms: {algorithms}

@@ -50,8 +50,8 @@ WITHOUT_EFFECT = ("--episode.time-limit", "--episode.reward-form", "--episode.pu
 class OperateOptions(EpisodeOptions):
     """Let the robot run in windows, and improve its nine parameters between them, using only its own sensors.
 
-    Give --episode.… for what differs from the robot of the training, such as --episode.randomisation.actuator-bandwidth
-    12 or --episode.payload 5, and --change for what changes during the session.
+    Give --episode.… for what differs from the robot of the training, such as --episode.payload 5 or
+    slower servos by --episode.randomisation.actuator-bandwidth 12, and --change for what changes during the session.
 
     :param subject: run folder of a training or a session, numbers separated by commas (P1 to P5, V1 to V4, or all
         nine), or the name of shipped parameters: what the robot begins with

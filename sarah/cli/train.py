@@ -50,15 +50,16 @@ OFFLINE = "--offline"
 class TrainOptions:
     """Learn the parameters of the pattern generator or of the hip law, with one action of the agent per episode.
 
-    Settings come from four places, and later ones win: the defaults below, the run folder of --from, the file of
-    --config, and the command line. The settings of the agent depend on --algo and those of the episodes on --task: give
-    both before --help. The training writes a run folder with the learned parameters (parameters.json), all episodes
-    (episodes.csv), the agent (model.zip) and the curves that TensorBoard shows.
+    Settings come from four places, and later ones win: the defaults below, the run folder of --from, the
+    file of --config, and the command line. The settings of the agent depend on --algo and those of the
+    episodes on --task: give both before --help. The training writes a run folder with the learned parameters
+    in parameters.json, all episodes in episodes.csv, the agent in model.zip, and the curves that TensorBoard shows.
 
     Most robots survive the paper's pushes without learning. So by default --task balance pushes harder, in shorter
-    episodes. The paper's settings, for its robot of 30 kg, are --episode.push.newtons 0 100
-    --episode.push.sagittal-share 0 --episode.time-limit 30. A file of --config that names no others has these too,
-    unless --from is given.
+    episodes. The paper's settings, for its robot of 30 kg, are:
+    --episode.push.newtons 0 100 --episode.push.sagittal-share 0 --episode.time-limit 30
+
+    A file of --config that names no others has these too, unless --from is given.
 
     With --offline it learns from logs instead, without simulation: see sarah-train --offline --help.
 
