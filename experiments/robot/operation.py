@@ -153,9 +153,8 @@ def robots(rows: DataFrame) -> str:
     """What each learner is worth on robots that do not change."""
     columns = ["robot", "learner", "score", "gain", "gain_low", "gain_high", "falls_per_session", "score_from_8_min"]
     caption = (
-        f"Sessions of {FULL.minutes:g} minutes in MuJoCo that begin with the shipped P1 to P5 and V1 to V4: score, its "
-        f"gain over frozen parameters with the 95 % interval, falls, score in the last two minutes, and score of the "
-        f"last parameters."
+        f"Sessions of {FULL.minutes:g} minutes in MuJoCo that begin with the shipped P1 to P5 and V1 to V4. The gain "
+        f"is over frozen parameters, with its 95 % interval. The last parameters run frozen on the same robot."
     )
     return table(rows[rows.robot != CHANGING], [*columns, "score_of_last_parameters"], caption, **FORMATS)
 

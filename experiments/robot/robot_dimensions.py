@@ -97,8 +97,8 @@ def answer(rows: DataFrame) -> str:
 def robots(rows: DataFrame) -> str:
     """Score, steps and survival."""
     caption = (
-        f"Robots with {{}} and the shipped P1 to P5 in PyBullet: means of {FULL.unpushed} episodes without a push, and "
-        f"survival of {FULL.pushes} lateral and of {FULL.pushes} sagittal pushes of {NEWTONS:.0f} N at 2 to 3 s."
+        f"Robots with {{}} and the shipped P1 to P5 in PyBullet. Score and steps are means of {FULL.unpushed} episodes "
+        f"without a push. Survival is of {FULL.pushes} pushes of {NEWTONS:.0f} N of each kind, at 2 to 3 s."
     )
     captions = {hips: caption.format("locked hips" if hips == "locked" else hips) for hips in HIPS}
     told = groups(rows, "hips").items()

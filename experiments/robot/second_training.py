@@ -168,8 +168,8 @@ def closeness(rows: DataFrame) -> str:
         for kind in (RECOMMENDED, MU)
     ]
     caption = (
-        "Score as a share of the best known one in the engine, mean with its standard error, and lowest; number of"
-        " trainings within 5 % of the best known score, with its 95 % interval; survival of pushes of 100 N, mean and"
+        "Score as a share of the best known one in the engine: mean with its standard error, and lowest. Number of"
+        " trainings within 5 % of the best known score, with its 95 % interval. Survival of pushes of 100 N: mean and"
         " lowest."
     )
     formats = dict.fromkeys(("of_best", "survival_100", "lowest", "lowest_survival"), ".1%")

@@ -59,15 +59,14 @@ REPLACED = {
 class EvalOptions(UnseenOptions):
     """Simulate learned, given or shipped parameters on unseen seeds, and summarise the episodes.
 
-    :param subject: run folder of a finished training, numbers separated by commas (P1 to P5 for stepping, or V1 to V4
-        for the task balance), or the name of shipped parameters: ``paper``, ``stepping`` or ``balance``, which comes
-        back from a push
+    :param subject: run folder of a finished training; numbers separated by commas, P1 to P5 for stepping, or V1 to V4
+        for the task balance; or the name of shipped parameters: ``paper``, ``stepping`` or ``balance``
     :param robustness: whether to write a table and a polar plot of survival by force and direction of the push, for
         these parameters and the baseline
     :param forces: forces of the pushes of --robustness, in N; by default 25 to 150 N for the default robot, and in
         proportion to its weight for another
     :param terrain: whether to write a table and a picture of score, steps and survival on slopes, bumps and slippery
-        ground, for 10 s without a push, and with one of 75 N for 30 kg at 2 to 3 s
+        ground. Each robot runs for 10 s, once without a push and once with one at 2 to 3 s, of 75 N for 30 kg
     :param out: folder for the table and the picture of --robustness or --terrain
     :param json: whether to print one JSON object
     :param log: MCAP file for a log of the first episode, which must be new; sarah-log reads it

@@ -32,8 +32,8 @@ NOT_OF_VIEW = ("out", "seconds", "speed")
 class VideoOptions(EpisodeOptions):
     """Film an episode: the robot from its front, a close view of its feet, phase, steps per second, score and push.
 
-    :param subject: run folder, numbers separated by commas (P1 to P5 for stepping, or V1 to V4 for the task balance),
-        the name of shipped parameters: ``paper``, ``stepping`` or ``balance``, or a log, whose motion is estimated from
+    :param subject: run folder; numbers separated by commas, P1 to P5 for stepping, or V1 to V4 for the task balance;
+        the name of shipped parameters: ``paper``, ``stepping`` or ``balance``; or a log, whose motion is estimated from
         its sensors
     :param out: file to write: MP4, which needs the extra ``video``, or GIF, which is smaller
     :param which: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its

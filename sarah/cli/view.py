@@ -38,7 +38,7 @@ class ViewOptions(EpisodeOptions):
 
     :param subject: run folder, of a training that need not be finished; numbers separated by commas, P1 to P5 for
         stepping, or V1 to V4 for the task balance; the name of shipped parameters: ``paper``, ``stepping`` or
-        ``balance``, which comes back from a push; or a log, whose motion is estimated from its sensors
+        ``balance``; or a log, whose motion is estimated from its sensors
     :param which: episode of a run folder: ``learned`` for the learned parameters, ``best``, or an index of its
         episodes.csv; by default ``learned``, or ``best`` if the training is not finished
     :param seed: seed of the episode, by which robot, sensors and push vary; by default the episode's own, or 0

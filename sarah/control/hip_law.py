@@ -13,8 +13,8 @@ Spread and fall answer the lean of the leg that carries (:class:`~sarah.control.
     spread = 2 V1 (lean outward beyond 0.15 rad)               at 1.5 rad/s, back at 1 rad/s
     fall = low-pass of (lean beyond 0.03 rad)                  falling backward is positive
 
-A robot that tips over the outer edge of its foot spreads both legs: the torso turns over the leg that carries and so
-pulls it back, and the other foot waits wide where the robot comes down. A robot that falls forward or backward steps
+A robot that tips over the outer edge of its foot spreads both legs. The torso turns over the leg that carries, which
+pulls the robot back, and the other foot waits wide where it comes down. A robot that falls forward or backward steps
 there with the foot in the air, if V3 is above zero.
 
 The law is a reconstruction. The paper says only that V1 and V3 multiply signals of the x and the y axis, that V2 and

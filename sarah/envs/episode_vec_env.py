@@ -45,8 +45,8 @@ class _Running(NamedTuple):
 class EpisodeVecEnv(HoldsWorld, VecEnv):
     """Episodes of one :class:`~sarah.envs.sarah_env.SarahEnv`, several of them in flight.
 
-    Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``: the reward is that
-    episode's return, and ``info`` contains its ``spec``, ``result``, ``disturbances`` unless the task names none, and
+    Step k submits the episode of its action and returns the outcome of step ``k - slots + 1``. The reward is that
+    episode's return. ``info`` contains its ``spec``, ``result``, ``disturbances`` unless the task names none, and
     ``transition`` (observation, action, last observation). The first ``slots - 1`` steps have no outcome: they end no
     episode, and have ``None`` as ``info["transition"]``. The last ``slots - 1`` steps submit nothing. So
     :attr:`episodes` take ``episodes + slots - 1`` steps.
