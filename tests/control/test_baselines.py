@@ -32,10 +32,10 @@ def test_a_mean_is_that_of_the_finite_readings_of_its_signal(bad: float) -> None
     """In between the value before stands in for one that is not, and in the beginning zero."""
     baselines = Baselines(DT)
     assert signals(baselines.corrected(reading(bad, bad, bad), True)) == (0.0, 0.0, 0.0)
-    for measured in ((bad, 1.0, 2.0), (1.0, bad, 6.0), (bad, 5.0, bad), (5.0, bad, bad)):
+    for measured in ((bad, 1.0, 2.0), (1.0, 5.0, bad), (bad, bad, 6.0), (5.0, 9.0, bad)):
         corrected = baselines.corrected(reading(*measured), True)
-    assert (baselines.acceleration_x, baselines.rate_x, baselines.rate_y) == pytest.approx((3.0, 3.0, 4.0))
-    assert signals(corrected) == pytest.approx((2.0, 2.0, 2.0))
+    assert (baselines.acceleration_x, baselines.rate_x, baselines.rate_y) == pytest.approx((3.0, 5.0, 4.0))
+    assert signals(corrected) == pytest.approx((2.0, 4.0, 2.0))
 
 
 def test_stepping_baselines_follow_within_eight_seconds() -> None:

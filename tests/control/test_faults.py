@@ -46,7 +46,9 @@ def test_targets_stay_within_limits_whose_joints_are_named() -> None:
     assert generator.targets[:2] == (-0.01, -0.01)  # one abduction for both
 
 
-@pytest.mark.parametrize("limits", [NARROW[:5], *(((low, high), *NARROW[1:]) for low, high in WRONG), None])
+@pytest.mark.parametrize(
+    "limits", [NARROW[:5], (*NARROW, NARROW[0]), *(((low, high), *NARROW[1:]) for low, high in WRONG), None]
+)
 def test_limits_that_no_robot_has_are_refused(limits: Any) -> None:
     with pytest.raises(ConfigurationError, match="limits must be 6 ranges around zero, not"):
         PatternGenerator(P, limits=limits)
