@@ -151,9 +151,12 @@ def test_new_p1_to_p5_hold_from_the_next_tick_on() -> None:
 
 def test_new_v1_to_v4_come_at_the_speed_of_the_ramp_and_arrive() -> None:
     """4 per second are 0.04 in a tick: V1 goes by 1 in 25 ticks, and V4 by 1.5 in 38. P1 to P5 stay."""
-    generator = stepping()
+    generator, late = stepping(), stepping()
     goal = BalanceParameters(0.0, 0.0, 0.5, -1.5)
-    generator.set_parameters(balance=goal)
+    for one in (generator, late):
+        one.set_parameters(balance=goal)
+    late.tick(reading(), 3 * DT)
+    assert pytest.approx(-0.12) == late.hips.parameters.V4
     assert generator.hips.parameters == BALANCE
     for tick in range(1, 39):
         generator.tick(reading())
@@ -237,7 +240,7 @@ def test_late_and_early_ticks_count_by_their_times() -> None:
         assert elapsed == pytest.approx(1.0, abs=0.016)
 
 
-@pytest.mark.parametrize(("seconds", "ticks"), [(None, 1), (0.03, 3), (60.0, 100), (math.nan, 1), (-5, 1)])
+@pytest.mark.parametrize(("seconds", "ticks"), [(None, 1), (0.03, 3), (60.0, 100), (0.0, 0), (math.nan, 1), (-5, 1)])
 def test_a_gap_counts_up_to_a_second_and_no_time_as_a_tick(seconds: float | None, ticks: int) -> None:
     late, punctual = started(), started()
     late.tick(OVER_RIGHT, seconds)

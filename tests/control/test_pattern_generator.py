@@ -150,6 +150,9 @@ def test_legs_push_lift_and_straighten_at_the_leg_speed() -> None:
     assert generator.targets[5] == 0.0
     tick_until_change(generator, ROCKING_BACK)
     assert generator.targets[4:] == pytest.approx((0.020, 0.0))
+    for length in (0.010, 0.0, 0.0):
+        generator.tick(reading(left=UNLOADED))
+        assert generator.targets[4:] == pytest.approx((length, 0.0))
 
 
 def test_abduction_counts_as_tilt_and_rate_to_its_side() -> None:
