@@ -137,6 +137,27 @@ def test_fall_of_one_tick_by_hand() -> None:
     assert moved.flexion == {Side.LEFT: pytest.approx(-0.06), Side.RIGHT: 0.0}  # 6 rad/s, towards -0.6 x 0.1061
 
 
+@pytest.mark.parametrize("side", Side)
+def test_outward_lean_of_one_tick_by_hand(side: Side) -> None:
+    """As above, about the other axis, and without dead band and second low-pass."""
+    hips = law()
+    assert hips.outward_lean == 0.0
+    left, right, abduction = (150.0, 0.0, (0.04, 0.0)) if side is LEFT else (0.0, 150.0, (0.0, 0.04))
+    after(hips, reading(left=left, right=right), ticks=1)
+    hips.sense(reading(rate_y=1.0, left=left, right=right, abduction=abduction))
+    assert hips.outward_lean == pytest.approx(side.value * 0.4043, abs=1e-4)
+
+
+@pytest.mark.parametrize(("dt", "averaged"), [(0.0025, 4), (0.01, 1), (0.02, 1)])
+def test_loads_are_means_over_a_hundredth_of_a_second(dt: float, averaged: int) -> None:
+    hips = HipLaw(LOCKED_HIPS, dt)
+    assert hips.loads == {LEFT: 0.0, RIGHT: 0.0}
+    for tick in range(6):
+        hips.sense(reading(left=100.0 * tick, right=200.0 - tick))
+    assert hips.loads[LEFT] == pytest.approx(np.mean([100.0 * tick for tick in range(6)][-averaged:]))
+    assert hips.loads[RIGHT] == pytest.approx(np.mean([200.0 - tick for tick in range(6)][-averaged:]))
+
+
 @settings(max_examples=30)
 @given(lean=st.floats(-0.2, 0.2), v3=st.floats(-1.0, 1.0))
 def test_foot_in_the_air_steps_to_the_side_of_the_fall(lean: float, v3: float) -> None:
@@ -159,11 +180,14 @@ def test_an_outlier_of_gyroscope_or_joint_is_soon_forgotten() -> None:
     assert abs(after(hit, reading(left=0.0), ticks=100).fall) < 0.05
 
 
-def test_a_leg_that_gives_way_outward_tips_and_v2_does_not() -> None:
-    """The right leg carries, and its foot has gone 0.2 rad to the left: 2 (0.2 - 0.15) rad. In the air it counts on."""
-    tipping = after(law(v1=1.0, servo_error=1.0), reading(left=0.0, abduction=(0.0, 0.2)), ticks=100)
+@pytest.mark.parametrize(("loads", "abduction"), [((0.0, 150.0), (0.0, 0.2)), ((150.0, 0.0), (-0.2, 0.0))])
+def test_a_leg_that_gives_way_outward_tips_and_v2_does_not(
+    loads: tuple[float, float], abduction: tuple[float, float]
+) -> None:
+    """The foot of the leg that carries has gone 0.2 rad inward: 2 (0.2 - 0.15) rad. In the air it counts on."""
+    tipping = after(law(v1=1.0, servo_error=1.0), reading(0.0, 0.0, *loads, abduction=abduction), ticks=100)
     assert tipping.spread == pytest.approx(0.1)
-    assert after(tipping, reading(left=0.0, right=0.0, abduction=(0.0, 0.2)), ticks=100).spread == pytest.approx(0.1)
+    assert after(tipping, reading(left=0.0, right=0.0, abduction=abduction), ticks=100).spread == pytest.approx(0.1)
     assert after(law(v1=1.0, v2=-2.0), reading(left=0.0, abduction=(0.1, 0.1)), ticks=100).spread == 0.0
 
 
