@@ -283,6 +283,14 @@ def test_naf_takes_the_arguments_of_the_page_on_rl_zoo() -> None:
     assert {made_of.get(name, name) for name in tuned} <= set(signature(NAF).parameters) and len(tuned) == 6
 
 
+def test_trainings_of_the_page_on_rl_zoo_are_evaluated_before_they_end() -> None:
+    page = (ROOT / "docs/how_to/rl_zoo.md").read_text().replace("\\\n", "")
+    steps = yaml.safe_load(blocks("how_to/rl_zoo.md", "yaml")[0])["Pendulum-v1"]["n_timesteps"]
+    trainings = [line for line in page.splitlines() if line.startswith("python zoo.py") and "--optimize" not in line]
+    frequencies = [int(every) for line in trainings for every in re.findall(r"--eval-freq (\d+)", line)]
+    assert len(frequencies) == len(trainings) == 2 and max(frequencies) < steps
+
+
 def test_the_page_of_the_library_links_every_public_name() -> None:
     links = re.findall(r"\{py:\w+\}`(?:([\w.]+) <)?([\w.]+)>?`", (ROOT / "docs/reference/api.md").read_text())
     assert links
