@@ -31,7 +31,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     # The same where chance decides more of a reward than the action does, and a second hill could be
     # taken for the higher one: it tries the whole box for half of the training.
     "noisy": ONE_STEP
-    | dict(replay_buffer_kwargs=dict(temperature=8.0), elite_std=LinearSchedule(1.2, 0.15, end_fraction=0.5)),
+    | dict(replay_buffer_kwargs=dict(temperature=8.0), elite_std=LinearSchedule(1.2, 0.15, end_fraction=0.8)),
     # Of NAF: the networks of Kouppas et al., literally. Their bias of 1 at the output of mu is the centre
     # of Box(0, 2), which in scaled actions is 0. On episodes of one step they hardly learn.
     "paper": dict(

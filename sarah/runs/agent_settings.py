@@ -31,7 +31,7 @@ ONE_STEP: dict[str, Any] = dict(
 )
 PRESETS: dict[str, dict[str, Any]] = {
     "one-step": ONE_STEP,
-    "noisy": ONE_STEP | dict(temperature=8.0, elite_std=(1.2, 0.15), elite_end=0.5),
+    "noisy": ONE_STEP | dict(temperature=8.0, elite_std=(1.2, 0.15)),
     "paper": dict(
         temperature=0.0,
         smoothed=False,
