@@ -29,7 +29,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     # environments, ``gradient_steps`` is per step of all of them: multiply it by their number.
     "one-step": ONE_STEP,
     # The same where chance decides more of a reward than the action does, and a second hill could be
-    # taken for the higher one: it tries the whole box for half of the training.
+    # taken for the higher one: its draws begin in the whole box.
     "noisy": ONE_STEP
     | dict(replay_buffer_kwargs=dict(temperature=8.0), elite_std=LinearSchedule(1.2, 0.15, end_fraction=0.8)),
     # Of NAF: the networks of Kouppas et al., literally. Their bias of 1 at the output of mu is the centre
