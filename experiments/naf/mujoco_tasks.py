@@ -10,6 +10,7 @@ last.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from typing import ClassVar, NamedTuple
@@ -148,7 +149,7 @@ def _means(rows: DataFrame, *more: str) -> DataFrame:
     keys = ["task", "algorithm", *more]
     for values, of in groups(rows, *keys).items():
         mean, *interval = interquartile_mean(of["return"])
-        low, high = interval if len(of) >= FEWEST else (None, None)
+        low, high = interval if len(of) >= FEWEST else (math.nan, math.nan)
         about = {**dict(zip(keys, values, strict=True)), "seeds": so_far(len(of), len(SEEDS))}
         ratio = of.v_over_bound.max()
         found.append({**about, "return": mean, "return_low": low, "return_high": high, "v_over_bound": ratio})

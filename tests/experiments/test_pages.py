@@ -17,7 +17,7 @@ from experiments import record
 from experiments.found import paths_of
 from experiments.interquartile import improvement, interquartile_mean
 from experiments.naf.learners import COMPARED, PUBLISHED, WIDER, WITH_NAFS_SETTINGS, WITHOUT, agent
-from experiments.naf.mujoco_tasks import FULL, TASKS, answer, four_algorithms
+from experiments.naf.mujoco_tasks import FULL, TASKS, answer, figure, four_algorithms
 from experiments.naf.standard_tasks import answer as answer_of_ranges
 from experiments.naf.standard_tasks import ends, over_seeds
 from experiments.pages import write
@@ -235,6 +235,7 @@ def test_a_table_says_how_many_seeds_there_are_so_far() -> None:
     rows += course("TD3", 0, 1.0)
     cells = [line.split(" | ")[1:4] for line in four_algorithms(DataFrame(rows)).splitlines()[4:]]
     assert cells == [["NAF", "3 of 5 so far", "1.0"], ["TD3", "1 of 5 so far", "1.0"], ["DDPG", "5", "1.0"]]
+    assert figure(DataFrame(course("NAF", 0, 1.0))).axes  # of a single training
 
 
 def test_each_case_is_a_training_those_that_tell_most_first() -> None:
