@@ -83,6 +83,12 @@ def test_a_tick_is_10_ms_and_over_30_newtons_load_a_foot(load: float, changes: l
     assert STAND_SECONDS == 1.0
 
 
+@pytest.mark.parametrize(("rate", "standing"), [(100.0, 100), (149.6, 150), (149.4, 149)])
+def test_it_stands_for_a_second_to_the_nearest_tick(rate: float, standing: int) -> None:
+    generator = PatternGenerator(SteppingParameters(*PAPER_STEPPING), dt=1.0 / rate)
+    assert next(tick for tick in range(200) if generator.tick(reading())) == standing
+
+
 def test_it_stands_for_a_second_and_no_foot_is_loaded_at_first() -> None:
     constants = ControllerConstants(time_out_seconds=0.1, pad_threshold=0.0)
     generator = PatternGenerator(SteppingParameters(0.0, 0.0, 0.0, 0.0, 0.0), constants=constants)
