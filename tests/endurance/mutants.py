@@ -41,7 +41,8 @@ class Subject(NamedTuple):
 
 
 CONTROL = "tests/control -k 'not simulated_robot'"
-EPISODE = "tests/episode/test_gait_and_reward.py"
+GAIT = "tests/episode/test_gait_and_reward.py"
+REWARD = f"{GAIT} tests/robot/test_scale.py"
 ENDING = "tests/episode/test_ending.py -k criteria"
 SENSORS = "tests/simulation/test_sensors.py -k 'not push'"
 CRITIC = "tests/agents/test_naf_equations.py"
@@ -54,8 +55,8 @@ SUBJECTS = {
     "sarah/control/hip_law.py": Subject(CONTROL),
     "sarah/control/constants.py": Subject(CONTROL, "ControllerConstants"),
     "sarah/control/parameters.py": Subject(CONTROL),
-    "sarah/episode/reward.py": Subject(EPISODE, "(?!RewardSettings).*"),
-    "sarah/episode/gait.py": Subject(EPISODE, "(?!GaitSettings|GaitMetrics).*"),
+    "sarah/episode/reward.py": Subject(REWARD, "(?!RewardSettings).*"),
+    "sarah/episode/gait.py": Subject(GAIT, "(?!GaitSettings|GaitMetrics).*"),
     "sarah/episode/ending.py": Subject(ENDING, "(?!EndingSettings).*"),
     "sarah/simulation/sensors.py": Subject(SENSORS),
     "agents/critic.py": Subject(CRITIC),

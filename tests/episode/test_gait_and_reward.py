@@ -92,6 +92,13 @@ def test_equation_2(place: tuple[float, float], height: float, steps: float, sym
     assert reward_rate(*place, height, steps, PRINTED) == pytest.approx(printed)
 
 
+def test_another_rewarded_frequency_counts_by_the_ratio() -> None:
+    settings = RewardSettings(step_frequency=6.0, reward_half_width=0.25)
+    assert [reward_rate(0.1, 0.0, 0.4, steps, settings) for steps in (6.0, 8.0, 4.0)] == pytest.approx(
+        [0.15 * 0.25 * share * 0.4 for share in (1.0, 0.5, 0.5)]
+    )
+
+
 @given(x=st.floats(-1, 1), y=st.floats(-1, 1), height=st.floats(0, 0.84), frequency=st.floats(0, 100))
 def test_no_symmetric_reward_is_above_the_ceiling(x: float, y: float, height: float, frequency: float) -> None:
     """That of a robot 0.84 m tall that steps in place for 29 s, at 0.5 * 0.5 * 2^0 * 0.84 a second, is 6.09."""
