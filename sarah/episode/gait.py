@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from dataclasses import dataclass
 from statistics import median
 from typing import Annotated
@@ -79,8 +79,8 @@ class GaitRecord(Observer):
         self._recent: deque[int] = deque()
         self._swing_height = 0.0
         self._clearances: list[float] = []
-        self._ends = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
-        self._ends_by_sensors = {Phase.SHIFT: 0, Phase.LIFT: 0, Phase.LAND: 0}
+        self._ends: Counter[Phase] = Counter()
+        self._ends_by_sensors: Counter[Phase] = Counter()
 
     def sensed(self, robot: RunningRobot) -> None:
         """Record the height of the swing foot's lowest sole contact, while a foot swings."""
@@ -100,8 +100,6 @@ class GaitRecord(Observer):
         :param tick: control tick in which the phase ended, from 0
         :param change: phase change that the pattern generator reported
         """
-        if change.ended is Phase.STAND:
-            return
         self._ends[change.ended] += 1
         self._ends_by_sensors[change.ended] += change.by_sensors
         if change.is_step:
@@ -128,7 +126,7 @@ class GaitRecord(Observer):
         :param before: time before the first tick that counts to the duration, in s
         """
         elapsed = self.ticks * (1.0 / self._control_rate)
-        by_sensors = {phase: self._ends_by_sensors[phase] / max(1, ends) for phase, ends in self._ends.items()}
+        by_sensors = {phase: self._ends_by_sensors[phase] / max(1, self._ends[phase]) for phase in Phase}
         return GaitMetrics(
             steps_per_second=self.steps / elapsed if elapsed else 0.0,
             steps=self.steps,

@@ -43,6 +43,27 @@ def test_steps_per_second_counts_the_last_two_seconds() -> None:
         assert sum(one.steps_per_second(now) > 0 for now in range(tick + 1, tick + 400)) == 200
 
 
+def test_a_small_robots_steps_are_counted_over_shorter_times() -> None:
+    quick = GaitRecord(100, time_scale=0.5)
+    for tick in (50, 100, 150):
+        quick.phase_change(tick, STEP)
+    assert quick.steps_per_second(160) == 2 / 1.0  # those at 100 and 150
+    early = GaitRecord(100, time_scale=0.5)
+    early.phase_change(5, STEP)
+    assert early.steps_per_second(10) == 1 / 0.25
+
+
+def test_duration_and_steps_per_second_are_those_of_the_ticks() -> None:
+    gait = GaitRecord(100)
+    assert (gait.metrics(1.0).duration, gait.metrics(1.0).steps_per_second) == (1.0, 0.0)
+    for tick in range(300):
+        gait.decided(swinging(0.0), STEP if tick in (50, 150) else None, None)
+    metrics = gait.metrics(1.0)
+    assert (metrics.duration, metrics.steps) == (4.0, 2)
+    assert metrics.steps_per_second == pytest.approx(2 / 3.0)
+    assert gait.metrics(0.1234567894).duration == 3.123456789  # whole nanoseconds
+
+
 def test_clearance_is_the_median_of_each_steps_highest() -> None:
     gait = GaitRecord(100)
     for heights in ((0.001, 0.010, 0.004), (0.020,), (0.012, 0.011)):
