@@ -12,7 +12,7 @@ from sarah import PHYSICS, EpisodeConfig, Evaluation, Tick
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.control.pattern_generator import STAND_SECONDS, Phase
 from sarah.envs.sarah_env import observation_from
-from sarah.episode.ending import TERMINATIONS, ending_words, paper_ending
+from sarah.episode.ending import TERMINATIONS, ending_words, is_ending, paper_ending
 from sarah.episode.episode import Episode
 from sarah.errors import SimulationError
 from sarah.robot.reading import SensorReading, Side, Vector
@@ -55,6 +55,11 @@ def test_criteria_of_time_count_from_half_a_tick_before() -> None:
     """A sum of ticks of 10 ms is rounded, so 5 s are met by less than 5 ms. Two steps are one with each leg."""
     assert [ending(steps=1, time=time) for time in (4.994, 4.995, 4.996)] == [None, None, "no_oscillation"]
     assert [ending(steps=steps, time=time) for steps, time in ((2, 5.0), (9, 30.0))] == [None, None]
+
+
+def test_criteria_of_a_name_ask_for_a_short_identifier() -> None:
+    assert all(map(is_ending, ["fell", "x" * 40]))
+    assert not any(map(is_ending, ["x" * 41, "far away", "", 3, None]))
 
 
 @pytest.mark.parametrize("rate", [100, 130, 170])
