@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 import pytest
 from laboratory import BuildSimulation, Laboratory
+from scipy.spatial.transform import Rotation
 
 from sarah.robot.filters import LowPass
 from sarah.robot.reading import GRAVITY, SensorReading
@@ -68,16 +69,23 @@ def test_noise_behind_a_filter_is_the_same_at_every_control_rate(control_rate: i
 
 
 def test_constant_errors_are_added_to_what_an_askew_sensor_reads() -> None:
-    askew = sensors(imu_tilt=(0.1, 0.0), acceleration_bias=(0.5, 0.0, 0.0), pad_gains=(0.8, 1.0, 1.0, 1.2))
+    askew = sensors(imu_tilt=(0.1, 0.0), acceleration_bias=(0.5, -0.3, 0.2), pad_gains=(0.8, 0.9, 1.1, 1.2))
     level = STILL._replace(acceleration=(0.0, 0.0, GRAVITY), angular_rate=(0.0, 0.0, 2.0))
     seen = askew(level)
-    assert seen.acceleration == pytest.approx((0.5, GRAVITY * math.sin(0.1), GRAVITY * math.cos(0.1)))
+    assert seen.acceleration == pytest.approx((0.5, GRAVITY * math.sin(0.1) - 0.3, GRAVITY * math.cos(0.1) + 0.2))
     assert seen.angular_rate == pytest.approx((0.0, 2.0 * math.sin(0.1), 2.0 * math.cos(0.1)))
-    assert seen.pressures == pytest.approx((60.0, 75.0, 75.0, 90.0)) and seen.joints == STILL.joints
+    assert seen.pressures == pytest.approx((60.0, 67.5, 82.5, 90.0)) and seen.joints == STILL.joints
     to_the_side = sensors(imu_tilt=(0.0, 0.1))(level)
     assert to_the_side.acceleration == pytest.approx((-GRAVITY * math.sin(0.1), 0.0, GRAVITY * math.cos(0.1)))
     biased = sensors(angular_rate_bias=(0.01, -0.02, 0.03))(level)
     assert biased.angular_rate == pytest.approx((0.01, -0.02, 2.03))
+
+
+@pytest.mark.parametrize("tilt", [(0.3, -0.4), (-0.02, -0.05), (0.0, 2.0)])
+def test_a_sensor_turned_about_any_axis_sees_the_other_way_round(tilt: tuple[float, float]) -> None:
+    seen, turn = sensors(imu_tilt=tilt)(TRUTH), Rotation.from_rotvec([*tilt, 0.0])
+    assert seen.acceleration == pytest.approx(turn.inv().apply(TRUTH.acceleration))
+    assert seen.angular_rate == pytest.approx(turn.inv().apply(TRUTH.angular_rate))
 
 
 @pytest.mark.parametrize("bandwidth", [5.0, 40.0])
