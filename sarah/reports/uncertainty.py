@@ -102,7 +102,9 @@ def share_of(best: Scores, share: float) -> Scores:
     return best - (1.0 - share) * abs(best)
 
 
-def number_at(scores: np.ndarray, chosen: np.ndarray, share: float, best: float | None = None) -> tuple[int, int, int]:
+def number_at(
+    scores: np.ndarray, chosen: np.ndarray, share: float, best: float | np.ndarray | None = None
+) -> tuple[int, int, int]:
     """Number of trainings whose mean score is at least a share of the best known one, with its 95 % interval.
 
     The interval knows the noise of the judge: it has the percentiles of a bootstrap over the judging episodes, drawn
@@ -112,7 +114,8 @@ def number_at(scores: np.ndarray, chosen: np.ndarray, share: float, best: float 
     :param scores: scores of all trainings, of shape (trainings, episodes)
     :param chosen: mask of the trainings that are counted
     :param share: share of the best known score
-    :param best: best known score; by default that of these scores, in every draw anew
+    :param best: best known score, or scores of the best known in the same episodes, whose luck drops out; by default
+        that of these scores, in every draw anew
     :return: the number and both ends of its interval
     """
     episodes = scores.shape[1]
@@ -121,8 +124,11 @@ def number_at(scores: np.ndarray, chosen: np.ndarray, share: float, best: float 
     for half in _halves(episodes, episodes):
         size = int(half.sum())
         weights[1:, half] = generator.multinomial(size, np.full(size, 1.0 / size), BOOTSTRAP_DRAWS)
-    bests = _best_known(scores, weights, episodes) if best is None else np.full(len(weights), best)
     means = scores[chosen] @ weights.T / episodes
+    if best is None:
+        bests = _best_known(scores, weights, episodes)
+    else:
+        bests = weights @ np.broadcast_to(best, episodes) / episodes
     found, *drawn = (means >= share_of(bests, share)).sum(axis=0).tolist()
     ends = ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2)
     low, high = np.quantile(drawn, ends, method="inverted_cdf").tolist()
