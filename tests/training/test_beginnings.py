@@ -25,7 +25,7 @@ from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.optimisers import OPTIMISERS, RandomSearch
 from sarah.training.plan import Stage, plan_of, seeds_of
-from sarah.training.train import train
+from sarah.training.train import simulated_episodes, train
 
 
 class Recording(Executor):
@@ -143,6 +143,7 @@ def test_each_return_is_corrected_by_what_is_known_then(tmp_path: Path, monkeypa
     monkeypatch.setitem(OPTIMISERS, "random", Listening)
     config = TrainingConfig("balance", "random", 28, slots=3, episode=BALANCE.config_of(EPISODE))
     run, _, specs = trained(tmp_path / "run", config)
+    assert len(specs) == simulated_episodes(config)
     specs = specs[: len(Listening.told)]
     returns = np.array([simulate(spec).episode_return for spec in specs])
     assert [float(row["return"]) for row in run.episodes()][: len(specs)] == returns.tolist()
