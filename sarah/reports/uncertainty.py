@@ -16,6 +16,8 @@ from scipy.special import stdtrit  # scipy.stats has it too, and takes a second 
 Scores = TypeVar("Scores", float, np.ndarray)
 CONFIDENCE = 0.95
 BOOTSTRAP_DRAWS = 2000
+FEWEST_DRAWN = 4
+"""Number of judging episodes below which drawing them again says nothing of other ones."""
 
 
 def standard_error(scores: np.ndarray) -> float:
@@ -109,7 +111,7 @@ def number_at(
 
     The interval knows the noise of the judge: it has the percentiles of a bootstrap over the judging episodes, drawn
     alike for all trainings, and within each of the halves that :func:`best_known` takes. It is widened to the number
-    itself, which draws can miss.
+    itself, which draws can miss. A half of a single episode cannot be drawn otherwise: then any number is possible.
 
     :param scores: scores of all trainings, of shape (trainings, episodes)
     :param chosen: mask of the trainings that are counted
@@ -130,6 +132,8 @@ def number_at(
     else:
         bests = weights @ np.broadcast_to(best, episodes) / episodes
     found, *drawn = (means >= share_of(bests, share)).sum(axis=0).tolist()
+    if episodes < FEWEST_DRAWN:
+        return found, 0, int(chosen.sum())
     ends = ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2)
     low, high = np.quantile(drawn, ends, method="inverted_cdf").tolist()
     return found, min(low, found), max(high, found)
