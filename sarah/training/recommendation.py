@@ -1,4 +1,4 @@
-"""The recommendation of a training: the parameters with the highest expected merit over all episodes.
+"""The recommendation of a training: the parameters with the highest expected merit, by its newest 500 episodes.
 
 An agent's own choice tends to stop at the edge of a plateau, and the best single episode is often luck. And the reward
 does not show a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here
