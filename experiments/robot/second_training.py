@@ -103,8 +103,7 @@ def _summary(group: DataFrame, kind: str) -> Row:
     """
     rows, best = group[group.kind == kind], _known(group, BEST)
     scores, of_best = _scores(rows), _of_best(rows, best)
-    every = np.full(len(rows), True)
-    close = number_at(np.vstack([scores, _scores(best)]), np.append(every, False), ENOUGH, _scores(best).mean())
+    close = number_at(scores, np.full(len(rows), True), ENOUGH, _scores(best)[0])
     return {
         "trainings": len(rows),
         **ratio("of_best", scores, _scores(best)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import sys
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
@@ -22,7 +23,7 @@ from sarah.episode.tasks import BALANCE, STEPPING, TASKS, Task, load_task
 from sarah.errors import ConfigurationError, check_range
 from sarah.reports.judging import PUSHED, UNPUSHED, evaluations_of
 from sarah.robot.description import describe_robot
-from sarah.runs.config import ALGORITHMS, TrainingConfig
+from sarah.runs.config import ALGORITHMS
 from sarah.runs.kinds import SESSION, TRAINING
 from sarah.simulation.engines import check_engine
 
@@ -118,7 +119,9 @@ def main() -> None:
     if not options.algorithms or len(set(options.algorithms)) < len(options.algorithms):
         raise ConfigurationError(f"algorithms must be different ones, at least one, not {options.algorithms!r}")
     episode = options.episode
-    base = TrainingConfig(task=options.task, episodes=options.episodes, slots=options.slots, episode=episode)
+    base = dataclasses.replace(
+        default_training(options.task), episodes=options.episodes, slots=options.slots, episode=episode
+    )
     describe_robot(episode.dimensions)
     check_engine(episode.engine)
     from sarah.episode.trial import try_task

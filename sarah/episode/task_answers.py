@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from sarah.control.hip_law import BalanceParameters
@@ -49,6 +49,20 @@ def disturbances_of(spec: EpisodeSpec) -> tuple[float, ...] | None:
     if isinstance(numbers, (list, tuple)) and all(map(is_finite, numbers)):
         return tuple(float(plain(number)) for number in numbers)
     raise _wrong(task, "disturbances must return a tuple of finite numbers", given)
+
+
+def check_as_many(task: Task, disturbances: Sequence[float], before: Sequence[Sequence[float]]) -> None:
+    """Refuse disturbances of an episode that are more or fewer than those of the episodes before.
+
+    :param task: task of the episodes
+    :param disturbances: disturbances of the episode
+    :param before: disturbances of the episodes before
+    """
+    if before and len(disturbances) != len(before[0]):
+        raise TaskError(
+            f"{task.reference}: disturbances must be as many numbers in every episode, "
+            f"{len(before[0])}, not {len(disturbances)}"
+        )
 
 
 def controller_of(task: Task, parameters: tuple[float, ...], config: EpisodeConfig) -> ControllerParameters:

@@ -32,7 +32,7 @@ from sarah.reports.race_entry import RACE_FILE, SCORES_FILE, Entry, RaceCurve, i
 from sarah.runs.config_files import first_difference
 from sarah.runs.run_folder import RunFolder
 from sarah.training.recorder import EPISODES_PER_RECOMMENDATION
-from sarah.training.train import train
+from sarah.training.train import simulated_episodes, train
 
 TIME_FILE = "race_seconds.txt"
 """Name of the file in every run folder of a race that has the wall time of its training, in s."""
@@ -75,11 +75,12 @@ def race(entries: Sequence[Entry], workers: Workers, progress_bar: bool = False)
 
 def _work(left: Sequence[Entry]) -> str:
     """What there is to do, at most: a training goes on where it was, and what is alike is judged once."""
-    learning = [entry.config.episodes for entry in left if not RunFolder(entry.folder, entry.config.task).is_finished]
+    unfinished = [entry for entry in left if not RunFolder(entry.folder, entry.config.task).is_finished]
     along = (entry.config.episodes // EPISODES_PER_RECOMMENDATION * entry.evaluations.along for entry in left)
+    learning = sum(simulated_episodes(entry.config) for entry in unfinished)
     judging = sum(along) + sum(entry.evaluations.final for entry in left)
     return (
-        f"{len(left)} trainings to go, with at most {sum(learning)} episodes together; "
+        f"{len(left)} trainings to go, with at most {learning} episodes together; "
         f"at most {judging} others judge what they recommend"
     )
 

@@ -16,6 +16,8 @@ from scipy.special import stdtrit  # scipy.stats has it too, and takes a second 
 Scores = TypeVar("Scores", float, np.ndarray)
 CONFIDENCE = 0.95
 BOOTSTRAP_DRAWS = 2000
+FEWEST_DRAWN = 4
+"""Number of judging episodes below which drawing them again says nothing of other ones."""
 
 
 def standard_error(scores: np.ndarray) -> float:
@@ -102,17 +104,20 @@ def share_of(best: Scores, share: float) -> Scores:
     return best - (1.0 - share) * abs(best)
 
 
-def number_at(scores: np.ndarray, chosen: np.ndarray, share: float, best: float | None = None) -> tuple[int, int, int]:
+def number_at(
+    scores: np.ndarray, chosen: np.ndarray, share: float, best: float | np.ndarray | None = None
+) -> tuple[int, int, int]:
     """Number of trainings whose mean score is at least a share of the best known one, with its 95 % interval.
 
     The interval knows the noise of the judge: it has the percentiles of a bootstrap over the judging episodes, drawn
     alike for all trainings, and within each of the halves that :func:`best_known` takes. It is widened to the number
-    itself, which draws can miss.
+    itself, which draws can miss. A half of a single episode cannot be drawn otherwise: then any number is possible.
 
     :param scores: scores of all trainings, of shape (trainings, episodes)
     :param chosen: mask of the trainings that are counted
     :param share: share of the best known score
-    :param best: best known score; by default that of these scores, in every draw anew
+    :param best: best known score, or scores of the best known in the same episodes, whose luck drops out; by default
+        that of these scores, in every draw anew
     :return: the number and both ends of its interval
     """
     episodes = scores.shape[1]
@@ -121,9 +126,14 @@ def number_at(scores: np.ndarray, chosen: np.ndarray, share: float, best: float 
     for half in _halves(episodes, episodes):
         size = int(half.sum())
         weights[1:, half] = generator.multinomial(size, np.full(size, 1.0 / size), BOOTSTRAP_DRAWS)
-    bests = _best_known(scores, weights, episodes) if best is None else np.full(len(weights), best)
     means = scores[chosen] @ weights.T / episodes
+    if best is None:
+        bests = _best_known(scores, weights, episodes)
+    else:
+        bests = weights @ np.broadcast_to(best, episodes) / episodes
     found, *drawn = (means >= share_of(bests, share)).sum(axis=0).tolist()
+    if episodes < FEWEST_DRAWN:
+        return found, 0, int(chosen.sum())
     ends = ((1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2)
     low, high = np.quantile(drawn, ends, method="inverted_cdf").tolist()
     return found, min(low, found), max(high, found)

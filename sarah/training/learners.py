@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -21,7 +21,6 @@ from stable_baselines3.common.vec_env import VecEnv
 from torch import nn
 
 from sarah.agents import LocalNAF
-from sarah.agents.arguments import checked_disturbances
 from sarah.agents.corrections import corrected
 from sarah.control.parameters import Parameters
 from sarah.envs.episode_vec_env import EpisodeVecEnv
@@ -29,7 +28,7 @@ from sarah.envs.sarah_env import draw_seed, observation_from, parameters_from
 from sarah.episode.episode import Episode, simulate
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
-from sarah.episode.task_answers import disturbances_of
+from sarah.episode.task_answers import check_as_many, disturbances_of
 from sarah.episode.tasks import Task
 from sarah.episode.workers import Executor, Job
 from sarah.errors import ConfigurationError, LearningError
@@ -243,7 +242,7 @@ class _Searching:
         self._generator = np.random.default_rng(plan.seeds.episodes)
         self._running: deque[tuple[EpisodeSpec, Job]] = deque()
         self._returns: list[float] = []
-        self._disturbances: list[np.ndarray] = []
+        self._disturbances: list[Sequence[float]] = []
 
     def learn(self, episodes: int) -> None:
         """Try parameters, and learn from the returns."""
@@ -271,8 +270,8 @@ class _Searching:
         disturbances = disturbances_of(spec)
         if disturbances is None:
             return result.episode_return
-        number = len(self._disturbances[0]) if self._disturbances else None
-        self._disturbances.append(checked_disturbances(disturbances, number))
+        check_as_many(spec.task, disturbances, self._disturbances)
+        self._disturbances.append(disturbances)
         self._returns.append(result.episode_return)
         return float(corrected(np.array(self._returns), np.array(self._disturbances))[-1])
 

@@ -1,4 +1,4 @@
-"""The recommendation of a training: the parameters with the highest expected merit over all episodes.
+"""The recommendation of a training: the parameters with the highest expected merit, by its newest 500 episodes.
 
 An agent's own choice tends to stop at the edge of a plateau, and the best single episode is often luck. And the reward
 does not show a robot that steps to a clock or drags its feet, so an episode without a valid gait has less merit here
@@ -20,8 +20,8 @@ from sarah.control.parameters import Parameters
 from sarah.episode.evaluation import SMALLEST_SENSOR_SHARE
 from sarah.episode.gait import LEAST_CLEARANCE
 from sarah.episode.result import EpisodeResult
+from sarah.episode.task_answers import check_as_many
 from sarah.episode.tasks import Task
-from sarah.errors import LearningError
 
 DISTINCT = 0.2
 """Distance within which parameters count as those of an earlier trial, scaled to [-1, 1]."""
@@ -56,7 +56,7 @@ class Tried:
     """
 
     def __init__(self, task: Task) -> None:
-        self._reference = task.reference
+        self._task = task
         self._box = task.box
         self._places: list[Parameters] = []
         self._merits: list[float] = []
@@ -73,14 +73,10 @@ class Tried:
         :param parameters: parameters of the episode
         :param merit: merit of the episode; one that is no number is as bad as can be
         :param disturbances: disturbances of the episode, as many as those of all others
-        :raises LearningError: if they are more or fewer
+        :raises TaskError: if they are more or fewer
         """
         numbers = () if disturbances is None else disturbances
-        if self._disturbances and len(numbers) != len(self._disturbances[0]):
-            raise LearningError(
-                f"{self._reference}: disturbances must be as many numbers in every episode, "
-                f"{len(self._disturbances[0])}, not {len(numbers)}"
-            )
+        check_as_many(self._task, numbers, self._disturbances)
         self._parameters.append(parameters)
         self._places.append(self._box.scaled(parameters))
         self._merits.append(min(LARGEST_MERIT, max(-LARGEST_MERIT, merit)))

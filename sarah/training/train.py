@@ -22,7 +22,7 @@ from sarah.runs.config import TrainingConfig
 from sarah.runs.recorded_episodes import RecordedEpisodes
 from sarah.runs.run_folder import RunFolder
 from sarah.training.learners import Learner, make_learner
-from sarah.training.plan import Stage, plan_of
+from sarah.training.plan import EPISODES_PER_TRIAL, Stage, plan_of
 from sarah.training.recorder import EpisodeRecorder
 
 SUMMARY_EPISODES = 10
@@ -43,6 +43,18 @@ class Learned:
     evaluation: Evaluation
     baseline: Evaluation | None
     diverged: int
+
+
+def simulated_episodes(config: TrainingConfig) -> int:
+    """Number of episodes that a training simulates: its budget, and those that say what it has learned.
+
+    :param config: settings of the training
+    """
+    stages = plan_of(config).stages
+    if config.task.neutral is None:
+        return config.episodes + SUMMARY_EPISODES * len(stages)
+    compared = EPISODES_PER_TRIAL * sum(stage.trials > 0 for stage in stages)
+    return config.episodes + 2 * SUMMARY_EPISODES * len(stages) + compared
 
 
 def train(

@@ -16,7 +16,7 @@ from sarah.episode.push import Push
 from sarah.episode.settings import EpisodeConfig
 from sarah.episode.tasks import BALANCE, STEPPING, BalanceConfig
 from sarah.errors import ConfigurationError
-from sarah.runs.agent_settings import AGENT_SETTINGS
+from sarah.runs.agent_settings import AGENT_SETTINGS, NAFSettings
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.physics import Physics
@@ -96,6 +96,7 @@ FILE = "import dataclasses, sarah\nMINE = dataclasses.replace(sarah.BALANCE, nam
 def test_balance_is_learned_from_pushes_that_tell_sets_apart(command: str, begun: Begin) -> None:
     config = begun(f"{command} --out usual")
     assert (config.task, config.episodes, config.episode) == (BALANCE, 300, PUSHED)
+    assert config.agent == NAFSettings(preset="noisy")
     own = begun(f"{command} --out own --episodes 7 {PAPER}")
     assert own.episodes == 7 and own.episode == BALANCE.episode
     directed = Push(newtons=(100.0, 125.0), degrees=(0.0, 90.0))

@@ -11,14 +11,15 @@ from typing import Any
 import numpy as np
 import pytest
 from laboratory import RESULT
+from pandas import DataFrame
 
 from experiments import judge as module
 from experiments import record, trainings
 from experiments.judge import KEPT_TOGETHER, Condition, Judge
 from experiments.robot import shipping
 from experiments.robot.balance_trainings import SHIPPED
-from experiments.robot.best_known import around, successive_halving
-from experiments.robot.second_training import ratio
+from experiments.robot.best_known import BEST, around, successive_halving
+from experiments.robot.second_training import COMPARED, MU, RECOMMENDED, closeness, ratio
 from experiments.robot.shipped_parameters import CONDITIONS, ship
 from experiments.robot.shipping import FULL, HARD, LEVEL, NEW, ROUNDS, WEAK, Candidate, Round, rounded
 from experiments.trainings import identity
@@ -133,6 +134,18 @@ def test_the_error_of_a_ratio_knows_both_kinds_of_noise() -> None:
     of_one = ratio("share", pushes[np.newaxis], best)["share_error"]
     assert ratio("share", np.array([pushes, pushes]), best)["share_error"] == pytest.approx(of_one)
     assert of_one == pytest.approx(np.std(pushes / 0.5, ddof=1) / 2.0)
+
+
+def test_luck_that_trainings_share_with_the_best_known_makes_no_count_uncertain() -> None:
+    """All lose the same 4 % of a best score that scatters widely."""
+    luck = np.random.default_rng(0).normal(0.7, 0.3, 40)
+    sets = [(COMPARED, BEST, luck), (RECOMMENDED, "naf seed 1", 0.96 * luck), (MU, "naf seed 1", 0.96 * luck)]
+    scores = [" ".join(map(str, values)) for *_, values in sets]
+    kinds, runs, _ = zip(*sets, strict=True)
+    found = closeness(
+        DataFrame({"kind": kinds, "run": runs, "engine": "mujoco", "survival_100": 1.0, "scores": scores})
+    )
+    assert found.count(" | 1 | 1 | 1 | ") == 2
 
 
 ENGINES: tuple[Engine, ...] = ("mujoco", "pybullet")

@@ -89,8 +89,10 @@ def test_what_is_recommended_again_is_judged_once(tmp_path: Path, met: list[tupl
 
 @pytest.mark.usefixtures("met")
 def test_a_race_says_before_it_starts_what_there_is_to_do(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Also the ten unseen episodes that a training ends with."""
+
     def said(trainings: int, judging: int) -> str:
-        to_do = f"{trainings} trainings to go, with at most 10 episodes together"
+        to_do = f"{trainings} trainings to go, with at most 20 episodes together"
         return f"{to_do}; at most {judging} others judge what they recommend\n"
 
     entries = entries_of(("random",), range(2), TINY, Evaluations(2, 1), tmp_path)

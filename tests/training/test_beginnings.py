@@ -17,14 +17,15 @@ from sarah.envs.sarah_env import draw_seed
 from sarah.episode.episode import simulate
 from sarah.episode.spec import FIRST_TRAINING_SEED, EpisodeSpec
 from sarah.episode.task_answers import disturbances_of
-from sarah.episode.tasks import BALANCE, STEPPING
+from sarah.episode.tasks import BALANCE, STEPPING, task_of_text
 from sarah.episode.workers import Executor, Job, Workers, begin_episode
+from sarah.errors import TaskError
 from sarah.runs.agent_settings import NAFSettings, TD3Settings, settings_of
 from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.optimisers import OPTIMISERS, RandomSearch
 from sarah.training.plan import Stage, plan_of, seeds_of
-from sarah.training.train import train
+from sarah.training.train import simulated_episodes, train
 
 
 class Recording(Executor):
@@ -142,9 +143,23 @@ def test_each_return_is_corrected_by_what_is_known_then(tmp_path: Path, monkeypa
     monkeypatch.setitem(OPTIMISERS, "random", Listening)
     config = TrainingConfig("balance", "random", 28, slots=3, episode=BALANCE.config_of(EPISODE))
     run, _, specs = trained(tmp_path / "run", config)
+    assert len(specs) == simulated_episodes(config)
     specs = specs[: len(Listening.told)]
     returns = np.array([simulate(spec).episode_return for spec in specs])
     assert [float(row["return"]) for row in run.episodes()][: len(specs)] == returns.tolist()
     disturbances = np.array([disturbances_of(spec) for spec in specs])
     expected = [corrected(returns[:end], disturbances[:end])[-1] for end in range(1, len(specs) + 1)]
     assert Listening.told == expected and (np.array(expected[19:]) != returns[19:]).any()
+
+
+@pytest.mark.parametrize("algo", ["random", "naf"])
+def test_other_disturbances_than_before_are_a_mistake_of_the_task(algo: str, tmp_path: Path) -> None:
+    """Whichever algorithm learns: a training that goes on would stop there again."""
+    task = "MINE = dataclasses.replace(sarah.STEPPING, name='mine', disturbances=lambda spec: (0,) * (spec.seed % 9))"
+    config = TrainingConfig(
+        task_of_text("mine.py", "MINE", f"import dataclasses, sarah\n{task}"), algo, 9, slots=1, episode=EPISODE
+    )
+    with pytest.raises(
+        TaskError, match=r"^mine.py:MINE: disturbances must be as many numbers in every episode, \d, not \d$"
+    ):
+        train(config, RunFolder.create(tmp_path / "run", config))

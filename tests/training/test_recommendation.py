@@ -14,7 +14,7 @@ from laboratory import RESULT
 from sarah.control.parameters import Box, Parameter, Parameters
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING, Task
-from sarah.errors import LearningError
+from sarah.errors import TaskError
 from sarah.runs.agent_settings import AgentSettings, EvolutionSettings, settings_of
 from sarah.training.optimisers import OPTIMISERS
 from sarah.training.plan import Stage
@@ -162,7 +162,7 @@ def test_what_known_disturbances_decide_is_no_merit() -> None:
 def test_disturbances_of_another_number_are_one_line() -> None:
     tried, words = Tried(STEPPING), r"^stepping: disturbances must be as many numbers in every episode, 2, not 1$"
     tried.append(CHOICE, 0.5, (1.0, 2.0))
-    with pytest.raises(LearningError, match=words):
+    with pytest.raises(TaskError, match=words):
         tried.append(CHOICE, 0.5, (1.0,))
     assert len(tried) == 1
 
