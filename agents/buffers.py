@@ -187,8 +187,8 @@ class RankReplayBuffer(ReplayBuffer):
         """
         The action around which ranks are highest, so that one lucky transition does not win.
 
-        :return: One of the stored actions, scaled to [-1, 1], of shape (action dim,); ``unscale_action`` of the policy
-            makes one of the environment of it
+        :return: One of the stored actions, scaled to [-1, 1], of shape (action dim,); reshaped as the action space,
+            ``unscale_action`` of the policy makes one of the environment of it
         :raises ValueError: if the buffer is empty, as it is after loading an agent
         """
         self._check_not_empty()

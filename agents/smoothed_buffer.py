@@ -45,8 +45,8 @@ class SmoothedReplayBuffer(RankReplayBuffer):
         """
         The action of the highest expected reward.
 
-        :return: An action scaled to [-1, 1], of shape (action dim,); ``unscale_action`` of the policy makes one of the
-            environment of it
+        :return: An action scaled to [-1, 1], of shape (action dim,); reshaped as the action space, ``unscale_action``
+            of the policy makes one of the environment of it
         :raises ValueError: if the buffer is empty, as it is after loading an agent
         """
         self._check_not_empty()
