@@ -82,7 +82,12 @@ def _scores(rows: DataFrame) -> np.ndarray:
 
 def _engines(rows: DataFrame) -> dict[str, DataFrame]:
     """The rows of each engine in which trainings have been judged; all that they are compared with comes before."""
-    return {engine: group for engine, group in groups(rows, "engine").items() if (group.kind != COMPARED).any()}
+    return {engine: group for engine, group in groups(rows, "engine").items() if (group.kind == RECOMMENDED).any()}
+
+
+def _judged(group: DataFrame) -> list[str]:
+    """What has been judged of the trainings in an engine, of which the networks' sets may be still to come."""
+    return [kind for kind in (RECOMMENDED, MU) if (group.kind == kind).any()]
 
 
 def _known(rows: DataFrame, run: str) -> DataFrame:
@@ -150,7 +155,8 @@ def figure(rows: DataFrame) -> Figure:
         marks = {name: float(best[name].iloc[0]) for name in NAMES}
         strips(axis, {name: learned[name] for name in NAMES}, marks, BEST)
         axis.set_title(WORDS[engine], fontsize="small")
-        for kind, word in ((RECOMMENDED, "learned"), (MU, "mu")):
+        for kind in _judged(group):
+            word = "learned" if kind == RECOMMENDED else kind  # as short as a column
             columns[f"{WORDS[engine]}\n{word}"] = _of_best(group[group.kind == kind], best)
     strips(shares, columns, dict.fromkeys(columns, 1.0))
     shares.set_ylabel("score over the best known one")
@@ -164,7 +170,7 @@ def closeness(rows: DataFrame) -> str:
     found = [
         {"engine": engine, "set": kind, **_summary(group, kind)}
         for engine, group in _engines(rows).items()
-        for kind in (RECOMMENDED, MU)
+        for kind in _judged(group)
     ]
     caption = (
         "Score as a share of the best known one in the engine: mean with its standard error, and lowest. Number of"
