@@ -156,7 +156,7 @@ def figure(rows: DataFrame) -> Figure:
         strips(axis, {name: learned[name] for name in NAMES}, marks, BEST)
         axis.set_title(WORDS[engine], fontsize="small")
         for kind in _judged(group):
-            word = "learned" if kind == RECOMMENDED else kind  # as short as a column
+            word = "learned" if kind == RECOMMENDED else kind  # columns are narrow
             columns[f"{WORDS[engine]}\n{word}"] = _of_best(group[group.kind == kind], best)
     strips(shares, columns, dict.fromkeys(columns, 1.0))
     shares.set_ylabel("score over the best known one")
