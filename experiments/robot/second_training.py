@@ -124,11 +124,10 @@ def answer(rows: DataFrame) -> str:
     sentences = []
     for engine, group in _engines(rows).items():
         found, (neutral,) = _summary(group, RECOMMENDED), _known(group, NEUTRAL).survival_100
-        mean, lowest = found["survival_100"], found["lowest_survival"]
-        which = "each training" if lowest == 1.0 else f"a training, and {shown(lowest, '.0%')} after the worst"
+        survived = survived_pushes(group[group.kind == RECOMMENDED].survival_100, 100.0)
         sentences.append(
-            f"In {WORDS[engine]} the robot survives {survived_pushes([mean], 100.0)} after {which}. Without the hip"
-            f" law it survives {shown(neutral, '.0%')} of them. Under harder pushes the {found['trainings']} trainings"
+            f"In {WORDS[engine]} the robot survives {survived} after each training. Without the hip law it"
+            f" survives {shown(neutral, '.0%')} of them. Under harder pushes the {found['trainings']} trainings"
             f" reach {shown(found['of_best'], '.1%')} of the best known score on average, and {found['within_5_%']} of"
             " them come within 5 % of it."
         )

@@ -87,7 +87,7 @@ def test_a_table_names_its_columns_and_what_judged(tmp_path: Path) -> None:
 def test_shares_are_of_a_known_best_score_and_may_be_below_zero() -> None:
     assert share_of(0.8, 0.95) == pytest.approx(0.76) and share_of(-1.0, 0.95) == pytest.approx(-1.05)
     table = rankings([curve("naf", 0.8, 0.8, 0.8)], best=2.0)
-    assert table.rows[0].held == {0.9: 0, 0.95: 0} and table.rows[0].at_share[0] == 0
+    assert table.rows[0].held == {0.9: 0, 0.95: 0} and table.rows[0].at_share == (0, 0, 1)
     assert table.best == table.best_along == 2.0
     (row,) = rankings([curve("naf", -9.0, -1.09, -1.0, -1.0, -1.0)]).rows
     assert row.episodes == {0.9: 10.0, 0.95: 15.0}
