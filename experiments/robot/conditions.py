@@ -28,14 +28,14 @@ from sarah.simulation.engines import Engine
 from sarah.simulation.randomisation import SensorConditions
 from sarah.simulation.terrain import Terrain
 
-TIME_LIMIT = 8.0
-"""Time limit of the episodes, in s: a robot that reaches it has survived, at least 4.85 s after its push."""
+TIME_LIMIT = 10.0
+"""Time limit of the episodes, in s: a robot that reaches it has survived, at least 6.85 s after its push."""
 SHIPPED = PARAMETER_SETS["balance"].spec
 CONTROLLERS: Mapping[str, tuple[float, ...]] = {"shipped V": SHIPPED.parameters, "V = 0": (0.0,) * 4}
 """Values of V1 to V4 by name. P1 to P5 are the shipped ones in either case."""
 SETTINGS = (
-    "P1 to P5 are the shipped ones. Pushes last 0.15 s and begin at 2 to 3 s. A robot that reaches 8 s counts as "
-    "having survived."
+    "P1 to P5 are the shipped ones. Pushes last 0.15 s and begin at 2 to 3 s. A robot that reaches "
+    f"{TIME_LIMIT:g} s counts as having survived."
 )
 """Last sentences of the caption of a table with pushes."""
 LEVEL = "level"
