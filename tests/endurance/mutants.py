@@ -71,8 +71,7 @@ SUBJECTS = {
     "agents/buffers.py": Subject(BUFFERS),
     "agents/naf.py": Subject(TARGETS, "train"),
 }
-"""The files. Of the constants those that compute, as the limits beside them catch a mistaken unit, and are rough. Of
-NAF its updates, with the equations."""
+"""The files. Of NAF its updates, with the equations."""
 
 
 @dataclass(frozen=True)
