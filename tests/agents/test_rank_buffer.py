@@ -13,6 +13,7 @@ from gymnasium import spaces
 from stable_baselines3.common.utils import set_random_seed
 
 from sarah.agents import NAF, LocalNAF, RankReplayBuffer
+from sarah.agents.buffers import average_ranks
 
 NUMBER, BOX = spaces.Box(-np.inf, np.inf, (1,)), spaces.Box(-1, 1, (2,))
 Action = Sequence[float]
@@ -41,6 +42,11 @@ def frequencies(buffer: RankReplayBuffer, n: int, draws: int = 100_000) -> np.nd
 
 def shares(*ranks: float) -> np.ndarray:
     return np.exp(4 * np.array(ranks)) / np.exp(4 * np.array(ranks)).sum()
+
+
+def test_ranks_go_from_0_to_1_and_equal_values_share_theirs() -> None:
+    assert average_ranks(np.array([3.0, 1.0, 1.0, 2.0])).tolist() == pytest.approx([1.0, 1 / 6, 1 / 6, 2 / 3])
+    assert average_ranks(np.array([5.0])).tolist() == [0.0]
 
 
 @pytest.mark.parametrize(
