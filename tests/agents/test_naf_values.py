@@ -148,7 +148,7 @@ def test_the_pull_of_mu_to_the_centre_fades_with_data(transitions, weight):
 RANKED = dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(temperature=0))
 
 
-@pytest.mark.parametrize(("n_envs", "buffer"), [(1, dict(buffer_size=40)), (4, RANKED)])
+@pytest.mark.parametrize(("n_envs", "buffer"), [(1, dict(buffer_size=40)), (4, RANKED), (4, {})])
 def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatch):
     """Those of all environments, and also those that a small replay buffer has forgotten."""
     counted: Any = []
