@@ -95,10 +95,10 @@ def test_the_bound_is_that_of_the_environment(tmp_path, monkeypatch):
             agent.learn(1005)
 
 
-@pytest.mark.parametrize("gamma", [0.0, 1.0])
-def test_without_a_horizon_there_is_no_bound(gamma):
+@pytest.mark.parametrize(("gamma", "is_bounded"), [(0.0, False), (0.99, True), (1.0, False)])
+def test_without_a_horizon_there_is_no_bound(gamma, is_bounded):
     model = trained(1020, gamma=gamma)
-    assert "train/value_over_bound" not in model.logger.name_to_value
+    assert ("train/value_over_bound" in model.logger.name_to_value) is is_bounded
 
 
 def test_w_is_the_mean_of_what_actions_near_mu_led_to():
