@@ -63,7 +63,8 @@ def make(module: ModuleType, command: str, arguments: Sequence[str]) -> Path:
     left = _left(cases, result)
     if result.name in record.names() and (known := record.read(result.name)).minutes:
         minutes = known.minutes * len(left) / max(1, len(every) - known.missing)
-        print(f"that takes about {max(1, round(minutes))} minutes with one worker", file=sys.stderr)
+        about = "a minute or less" if minutes < 1.5 else f"about {minutes:.0f} minutes"
+        print(f"that takes {about} with one worker", file=sys.stderr)
     _compute(experiment, left, result, place)
     if place != folder:
         record.write(record.read(result.name, place), folder)

@@ -80,10 +80,10 @@ def _duration(result: Result) -> str:
         return ""
     minutes = round(result.minutes)
     if minutes < 2:
-        return ", in a minute or two"
-    return (
-        f", in {minutes} minutes with one worker" if minutes < 120 else f", in {minutes / 60:.0f} hours with one worker"
-    )
+        time = "a minute or two"
+    else:
+        time = f"{minutes} minutes with one worker" if minutes < 120 else f"{minutes / 60:.0f} hours with one worker"
+    return f", in {time}{' so far' if result.missing else ''}"
 
 
 def _command(name: str) -> str:

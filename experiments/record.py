@@ -52,7 +52,8 @@ class Result:
     def made_at(self) -> str:
         """When the last rows were made, and at which commits all of them, in words."""
         dirty = " with uncommitted changes" if self.tree else ""
-        return f"Made at {' and '.join(self.commit.split())}{dirty} on {self.date}"
+        commits = " and ".join(", ".join(self.commit.split()).rsplit(", ", 1))
+        return f"Made at {commits}{dirty} on {self.date}"
 
     @property
     def table(self) -> DataFrame:

@@ -100,7 +100,9 @@ def figure(rows: DataFrame) -> Figure:
 def settled(rows: DataFrame) -> str:
     """What the trainings recommend."""
     columns = ["run", *NAMES, "score", "survival", "reference_score", "kept"]
-    return table(rows, columns, "First Trainings by NAF and the paper's own parameters, on 12 unseen seeds.")
+    return table(
+        rows, columns, "First Trainings by NAF in PyBullet and the paper's own parameters, on 12 unseen seeds."
+    )
 
 
 def gait(rows: DataFrame) -> str:

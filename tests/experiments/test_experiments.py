@@ -147,7 +147,7 @@ def test_rows_are_made_at_several_commits_and_machines(tmp_path: Path, monkeypat
         full = Squares(fails_at=2) if number == 1 else Squares()
     assert [row["number"] for row in result.rows] == ["0", "0", "1", "1", "2", "2"] and not result.missing
     assert result.versions == "python 3.11, torch 2.12 and 2.13"
-    assert result.made_at.startswith("Made at commit1 and commit2 and commit3 on ")
+    assert result.made_at.startswith("Made at commit1, commit2 and commit3 on ")
 
 
 def test_another_command_begins_anew_and_cases_can_be_chosen(tmp_path: Path) -> None:
