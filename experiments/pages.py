@@ -78,12 +78,11 @@ def _duration(result: Result) -> str:
     """How long the cases took that have been made, in words."""
     if not result.minutes:
         return ""
-    minutes = round(result.minutes)
+    minutes, so_far = round(result.minutes), " so far" if result.missing else ""
     if minutes < 2:
-        time = "a minute or two"
-    else:
-        time = f"{minutes} minutes with one worker" if minutes < 120 else f"{minutes / 60:.0f} hours with one worker"
-    return f", in {time}{' so far' if result.missing else ''}"
+        return f", in a minute or two{so_far}"
+    time = f"{minutes} minutes" if minutes < 120 else f"{minutes / 60:.0f} hours"
+    return f", in {time}{so_far} with one worker"
 
 
 def _command(name: str) -> str:
