@@ -6,7 +6,7 @@ import sys
 from collections.abc import Sequence
 
 from experiments import record
-from experiments.found import Package, find, paths_of, questions
+from experiments.found import Package, find, paths_of, questions, sources
 from experiments.making import make
 from sarah.cli.options import as_command
 from sarah.errors import ConfigurationError
@@ -28,8 +28,11 @@ def main(package: Package, arguments: Sequence[str]) -> None:
     elif arguments[0] == "age":
         if arguments[1:]:
             raise ConfigurationError(f"age takes no arguments, not {arguments[1]!r}")
-        results = [record.read(name) for name in paths_of(package) if name in record.names()]
-        _print_by_name({one.name: f"{one.made_at}: {age(one, find(one.name).FULL.depends_on)}" for one in results})
+        ages = {}
+        for name in sorted(paths_of(package).keys() & set(record.names())):
+            result, depends_on = record.read(name), (*find(name).FULL.depends_on, *sources(name))
+            ages[name] = f"{result.made_at}: {age(result, depends_on)}"
+        _print_by_name(ages)
     else:
         name, *options = arguments
         print(make(find(name, package), f"{package.command} {name}", options))
@@ -40,14 +43,14 @@ def _print_by_name(words: dict[str, str]) -> None:
     print("\n".join(f"{name:{width}}  {text}" for name, text in words.items()))
 
 
-def age(result: record.Result, folders: tuple[str, ...]) -> str:
-    """What has changed since a result was made in the folders that it depends on, in words."""
+def age(result: record.Result, paths: tuple[str, ...]) -> str:
+    """What has changed since a result was made in the folders and files that it depends on, in words."""
     first = result.commit.split()[0]
     if record.commit() == record.UNKNOWN or record.git("rev-parse", "--is-shallow-repository") == "true":
         return "cannot tell without the whole history"
     if record.git("merge-base", "--is-ancestor", first, "HEAD") is None:
         return f"cannot tell, as {first} is no earlier commit of this one"
-    count = record.git("rev-list", "--count", f"{first}..HEAD", "--", *folders)
+    count = record.git("rev-list", "--count", f"{first}..HEAD", "--", *paths)
     return f"{count} commits since have touched what it depends on"
 
 

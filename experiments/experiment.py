@@ -29,6 +29,11 @@ class Experiment(ABC):
     depends_on: ClassVar[tuple[str, ...]] = EPISODE
     """Folders of the project that decide the rows."""
 
+    @property
+    def options(self) -> str:
+        """Options that rows depend on, in words."""
+        return ", ".join(f"{name}={value}" for name, value in vars(self).items() if name not in ("workers", "runs"))
+
     @staticmethod
     def clock() -> float:
         """Clock by which it is said how long cases take, in s: others on the machine do not disturb it."""

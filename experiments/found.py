@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from importlib import import_module
 from pathlib import Path
 from types import ModuleType
@@ -33,6 +34,20 @@ def paths_of(*packages: Package) -> dict[str, Path]:
     folders = [ROOT.joinpath(*folder.split(".")) for package in packages or PACKAGES for folder in package.folders]
     paths = [path for folder in folders for path in sorted(folder.glob("*.py"))]
     return {path.stem: path for path in paths if "\nQUICK = " in path.read_text(encoding="utf-8")}
+
+
+def sources(name: str) -> set[str]:
+    """Files of an experiment's module and of the modules beside it that it imports from, directly or not."""
+    folders = "|".join(re.escape(folder) for package in PACKAGES for folder in package.folders)
+    found = {}
+    waiting = [paths_of()[name]]
+    while waiting:
+        path = waiting.pop()
+        found[str(path)] = text = path.read_text(encoding="utf-8")
+        imported = re.findall(rf"^from ((?:{folders})[.]\w+) import", text, re.MULTILINE)
+        files = (ROOT.joinpath(*one.split(".")).with_suffix(".py") for one in imported)
+        waiting += [file for file in files if str(file) not in found]
+    return set(found)
 
 
 def questions(*packages: Package) -> dict[str, str]:

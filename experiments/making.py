@@ -59,7 +59,7 @@ def make(module: ModuleType, command: str, arguments: Sequence[str]) -> Path:
     whole = re.sub(r" --workers[ =]\S+", "", shlex.join([*command.split(), *arguments]))  # no row depends on them
     place = _place(module.__name__.rpartition(".")[2], folder)
     place.mkdir(parents=True, exist_ok=True)
-    result = _begun(module, place, whole)
+    result = _begun(module, experiment, place, whole)
     left = _left(cases, result)
     if result.name in record.names() and (known := record.read(result.name)).minutes:
         minutes = known.minutes * len(left) / max(1, len(every) - known.missing)
@@ -121,27 +121,38 @@ def _place(name: str, folder: Path) -> Path:
 
 def _left(cases: Sequence[Row], result: Result) -> list[Row]:
     """Cases that a result lacks."""
-    known = {tuple(row[column] for column in cases[0]) for row in result.rows}
-    return [case for case in cases if tuple(map(cell, case.values())) not in known]
+    known = [{column: row.get(column) for column in cases[0]} for row in result.rows]
+    return [case for case in cases if _cells(case) not in known]
 
 
-def _begun(module: ModuleType, folder: Path, command: str) -> Result:
-    """The result that this command has begun, or a new one."""
+def _cells(case: Row) -> dict[str, str]:
+    """A case as it stands in the file."""
+    return {column: cell(value) for column, value in case.items()}
+
+
+def _begun(module: ModuleType, experiment: Experiment, folder: Path, command: str) -> Result:
+    """The result that this command has begun with the same options, or a new one."""
     commit = record.commit()
     if commit == record.UNKNOWN:
         print("without a git history the result cannot tell its commit", file=sys.stderr)
     name, question = module.__name__.rpartition(".")[2], first_line(module.__doc__)
-    new = Result(name, question, command, commit, time.strftime("%Y-%m-%d"), 0.0, versions=_listed(versions()))
+    new = Result(name, question, command, commit, time.strftime("%Y-%m-%d"), 0.0, options=experiment.options)
+    new = dataclasses.replace(new, versions=_listed(versions()))
     if name not in record.names(folder):
         return new
     before = record.read(name, folder)
-    if not before.missing or before.command != command:
+    if not before.missing:
         return new
+    if before.command != command or before.options not in ("", new.options):
+        print(f"begins anew: {folder / name}.csv has rows of another command or other options", file=sys.stderr)
+        return new
+    cases = [_cells(case) for case in experiment.cases()]
+    rows = [row for row in before.rows if {column: row.get(column) for column in cases[0]} in cases]
     commits = " ".join(dict.fromkeys([*before.commit.split(), commit]))
-    print(f"goes on after {len(before.rows)} rows", file=sys.stderr)
-    of_rows = {key: getattr(before, key) for key in ("minutes", "tree", "remark", "rows")}  # true of those that stay
+    print(f"goes on after {len(rows)} rows", file=sys.stderr)
+    of_rows = {key: getattr(before, key) for key in ("minutes", "tree", "remark", "options")}  # true of those that stay
     used = _listed(versions(), dict(word.split(maxsplit=1) for word in before.versions.split(", ") if word))
-    return dataclasses.replace(new, commit=commits, versions=used, **of_rows)
+    return dataclasses.replace(new, commit=commits, versions=used, rows=rows, **of_rows)
 
 
 def _listed(used: Mapping[str, str], before: Mapping[str, str] | None = None) -> str:

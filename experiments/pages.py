@@ -10,14 +10,15 @@ import re
 import shlex
 import sys
 import textwrap
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from pathlib import Path
 
 from cogapp import Cog
 
 from experiments import record
+from experiments.experiment import Experiment
 from experiments.found import PACKAGES, find, first_line, paths_of
-from experiments.record import ROOT, Result, Row, cell
+from experiments.record import ROOT, Result, cell
 from sarah.errors import ConfigurationError, unknown_name
 
 PICTURES = ROOT / "docs" / "results"
@@ -45,7 +46,7 @@ def show(part: str) -> None:
         result = record.read(name)
         text = _filled(getattr(module, function)(result.table))
         if "\n|" in text:
-            text = f"{text}\n\n{_source(module.FULL.cases(), result)}"
+            text = f"{text}\n\n{_source(module.FULL, result)}"
     print(f"\n{text}\n")
 
 
@@ -59,14 +60,15 @@ def _broken(paragraph: str) -> str:
     return textwrap.fill(whole, WIDTH, break_long_words=False, break_on_hyphens=False).replace("\0", " ")
 
 
-def _source(cases: Sequence[Row], result: Result) -> str:
+def _source(full: Experiment, result: Result) -> str:
     """The line below a table: how to make it or one of its rows again, where and when it was made, and its data."""
-    command = _command(result.name)
+    command, cases = _command(result.name), full.cases()
     varying = [key for key, value in cases[0].items() if any(case[key] != value for case in cases)]
     only = shlex.join(word for key in varying for word in ("--only", f"{key}={cell(cases[-1][key])}"))
     sentences = [
         result.remark,
         "Some cases are still to be made." if result.missing else "",
+        "" if result.options in ("", full.options) else f"Its options were not those of today: {result.options}.",
         f"{result.made_at} by `{command}`{_duration(result)}.",
         f"One of its cases alone: `{command} {only}`." if only else "",
         f"[Data](../../results/{result.name}.csv)",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import itertools
 import re
 import subprocess
 from collections.abc import Iterator, Mapping, Sequence
@@ -45,6 +46,7 @@ class Result:
     missing: int = 0  # number of cases that are still to be made
     tree: str = ""  # ``dirty`` if the project had changes that no commit has
     remark: str = ""  # sentence that a page has to say about the rows
+    options: str = ""  # of the experiment, but for those that no row depends on
     versions: str = ""  # of Python, the project and the packages it computes with
     rows: Sequence[Mapping[str, str]] = field(default=(), repr=False)  # texts by column
 
@@ -72,20 +74,22 @@ def names(folder: Path = RESULTS) -> list[str]:
 def read(name: str, folder: Path = RESULTS) -> Result:
     """Read a result.
 
-    :raises ResultError: if there is none, or its head is incomplete
+    :raises ResultError: if there is none, or its head or a row is incomplete
     """
     path = folder / f"{name}.csv"
     try:
         lines = path.read_text(encoding="utf-8").splitlines()
+        head = list(itertools.takewhile(HEAD.match, lines))
+        about: dict[str, Any] = dict(HEAD.findall("\n".join(head)))
+        about |= {key: kind(about[key]) for key, kind in (("minutes", float), ("missing", int)) if key in about}
+        rows = list(csv.DictReader(lines[len(head) :]))
+        if wrong := [row for row in rows if None in row or None in row.values()]:
+            raise ValueError(f"a row has more or fewer cells than columns: {next(iter(wrong[0].values()))}")
+        return Result(name, rows=rows, **about)
     except FileNotFoundError as error:
         raise ResultError(f"there is no {path}") from error
-    found = [(match[1], match[2]) for line in lines if (match := HEAD.match(line))]
-    about: dict[str, Any] = dict(found)
-    about |= {key: kind(about[key]) for key, kind in (("minutes", float), ("missing", int)) if key in about}
-    try:
-        return Result(name, rows=list(csv.DictReader(lines[len(found) :])), **about)
-    except TypeError as error:
-        raise ResultError(f"the head of {path} has other keys than a result: {', '.join(about)}") from error
+    except (TypeError, ValueError, csv.Error) as error:  # keys of the head are arguments of a result
+        raise ResultError(f"{path} is no result: {str(error).removeprefix('Result.__init__() ')}") from error
 
 
 def write(result: Result, folder: Path = RESULTS) -> None:

@@ -25,6 +25,7 @@ from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.push import NO_PUSH, Push
 from sarah.episode.tasks import BALANCE
 from sarah.files import replace_text
+from sarah.reports.robustness import PUSHED_BETWEEN
 from sarah.runs.run_folder import RunFolder
 from sarah.simulation.engines import Engine
 
@@ -33,7 +34,7 @@ MU_NAMES = [f"mu_{name}" for name in NAMES]
 SHIPPED: Parameters = PARAMETER_SETS["balance"].spec.parameters
 """V1 to V4 that the package ships."""
 PUSH_100, PUSH_125, SAGITTAL_115 = (
-    Push((newtons, newtons), at_seconds=(2.0, 3.0), sagittal_share=share)
+    Push((newtons, newtons), at_seconds=PUSHED_BETWEEN, sagittal_share=share)
     for newtons, share in ((100.0, 0.0), (125.0, 0.0), (115.0, 1.0))
 )
 JUDGING_SEED, CHOOSING_SEED, OTHER_SEED, TESTING_SEED = 20_000, 30_000, 40_000, 50_000

@@ -23,19 +23,19 @@ from sarah.episode.push import Push
 from sarah.episode.robot_settings import conditions_of
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import BALANCE, BalanceConfig
-from sarah.reports.robustness import PUSHED_BETWEEN, PushedEpisode, robustness_table
+from sarah.reports.robustness import PUSHED_BETWEEN, SECONDS_AFTER, PushedEpisode, robustness_table
 from sarah.simulation.engines import Engine
 from sarah.simulation.randomisation import SensorConditions
 from sarah.simulation.terrain import Terrain
 
-TIME_LIMIT = 10.0
-"""Time limit of the episodes, in s: a robot that reaches it has survived, at least 6.85 s after its push."""
+TIME_LIMIT = PUSHED_BETWEEN[1] + Push.duration + SECONDS_AFTER
+"""Time limit of the episodes, in s: a robot that reaches it has survived."""
 SHIPPED = PARAMETER_SETS["balance"].spec
 CONTROLLERS: Mapping[str, tuple[float, ...]] = {"shipped V": SHIPPED.parameters, "V = 0": (0.0,) * 4}
 """Values of V1 to V4 by name. P1 to P5 are the shipped ones in either case."""
 SETTINGS = (
-    "P1 to P5 are the shipped ones. Pushes last 0.15 s and begin at 2 to 3 s. A robot that reaches "
-    f"{TIME_LIMIT:g} s counts as having survived."
+    f"P1 to P5 are the shipped ones. Pushes last {Push.duration:g} s and begin at {PUSHED_BETWEEN[0]:g} to "
+    f"{PUSHED_BETWEEN[1]:g} s. A robot that reaches {TIME_LIMIT:g} s counts as having survived."
 )
 """Last sentences of the caption of a table with pushes."""
 LEVEL = "level"

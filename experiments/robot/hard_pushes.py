@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import get_args
 
+import numpy as np
 from pandas import DataFrame
 
 from experiments.experiment import Experiment, product, survival
@@ -78,17 +79,29 @@ def _differences(rows: DataFrame) -> DataFrame:
     return DataFrame(found)
 
 
+def _agree_better(rows: DataFrame) -> bool:
+    """Whether the engines agree better at the reference physics, by more than chance: push by push, to 95 %."""
+
+    def apart(physics: str) -> np.ndarray:
+        """Lead of the engine in which more pushes are survived."""
+        ones, others = (np.array(list(cell)) == SURVIVED for cell in rows[rows.physics == physics].outcomes)
+        lead = ones.astype(float) - others
+        return lead * np.sign(lead.mean())
+
+    closer = apart("standard") - apart("reference")
+    return bool(closer.mean() > 1.96 * closer.std(ddof=1) / math.sqrt(len(closer)))
+
+
 def answer(rows: DataFrame) -> str:
     """How far the engines are apart at each physics, and which figures to believe."""
     hard = (rows.push_n == 125.0) & (rows.controller == "shipped V")
     survived = {physics: group.survival for physics, group in groups(rows[hard], "physics").items()}
-    at_standard, at_reference = (shares.max() - shares.min() for shares in survived.values())
     standard, reference = ([shown(share, ".0%") for share in shares] for shares in survived.values())
     verdict = (
         "The engines agree better there, so believe these figures, to within the difference between the engines."
-        if at_reference < at_standard
-        else "The engines agree no better there, so all that is known is the range from the lowest to the highest of "
-        "these figures."
+        if _agree_better(rows[hard])
+        else "It cannot be told that the engines agree better there, so all that is known is the range from the lowest "
+        "to the highest of these figures."
     )
     return (
         f"With the shipped V the robot survives {standard[0]} of pushes of 125 N in PyBullet and {standard[1]} in "

@@ -98,5 +98,8 @@ figure_stepping, figure_balance = partial(_along, "stepping"), partial(_along, "
 
 def balance(rows: DataFrame) -> str:
     """Survival by V1 to V4."""
-    caption = f"Survival of twelve pushes of {NEWTONS:.0f} N at 1 to 4 s with the shipped P1 to P5."
+    caption = (
+        f"Survival of {EPISODES['balance']} pushes of {NEWTONS:.0f} N at 1 to 4 s with the shipped P1 to P5. A robot "
+        f"that reaches {SECONDS['balance']:g} s counts as having survived."
+    )
     return turned_table(rows[rows.task == "balance"], ["value"], ["parameter", "engine"], "survival", caption)

@@ -110,8 +110,10 @@ def answer(rows: DataFrame) -> str:
     """How close the standard physics is, and MuJoCo."""
     off = beside_finest(rows).pivot(index=CONDITION, columns="setting", values="difference").abs()
     close, worst = (off < CLOSE).sum(), off.max().map(lambda value: shown(value, ".0%"))
+    share = close.standard / len(off)
+    verdict = "fine enough" if share == 1.0 else "fine enough, with exceptions" if share > 0.75 else "too coarse"
     return (
-        f"The standard physics is fine enough, with exceptions. In {close.standard} of {len(off)} combinations of good "
+        f"The standard physics is {verdict}. In {close.standard} of {len(off)} combinations of good "
         f"parameters, control rate and sensors its score is within {shown(CLOSE, '.0%')} of the finest setting's. "
         f"MuJoCo's is in {close.mujoco}. At worst the standard physics is off by {worst.standard}, and MuJoCo by "
         f"{worst.mujoco}."

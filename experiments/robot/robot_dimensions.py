@@ -22,6 +22,7 @@ from sarah.episode.push import Push
 from sarah.episode.result import EpisodeResult
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import BALANCE, BalanceConfig
+from sarah.reports.robustness import PUSHED_BETWEEN
 
 HIPS = {"locked": (0.0, 0.0, 0.0, 0.0), "V1 = V3 = 1": (1.0, 0.0, 1.0, 0.0)}
 LATERAL, SAGITTAL = (0.0, 180.0), (90.0, 270.0)
@@ -65,7 +66,7 @@ class RobotDimensions(Experiment):
             return simulate(EpisodeSpec(HIPS[hips], seed, BALANCE, config))
 
         def survival(degrees: tuple[float, float]) -> float:
-            pushes = [Push((NEWTONS, NEWTONS), (angle, angle), at_seconds=(2.0, 3.0)) for angle in degrees]
+            pushes = [Push((NEWTONS, NEWTONS), (angle, angle), at_seconds=PUSHED_BETWEEN) for angle in degrees]
             return mean(episode(seed, pushes[seed % 2], self.pushed_seconds).survived for seed in range(self.pushes))
 
         free = [episode(seed, Push(newtons=(0.0, 0.0)), self.time_limit) for seed in range(self.unpushed)]
@@ -98,7 +99,9 @@ def robots(rows: DataFrame) -> str:
     """Score, steps and survival."""
     caption = (
         f"Robots with {{}} and the shipped P1 to P5 in PyBullet. Score and steps are means of {FULL.unpushed} episodes "
-        f"without a push. Survival is of {FULL.pushes} pushes of {NEWTONS:.0f} N of each kind, at 2 to 3 s."
+        f"without a push. Survival is of {FULL.pushes} pushes of {NEWTONS:.0f} N of each kind, at "
+        f"{PUSHED_BETWEEN[0]:g} to {PUSHED_BETWEEN[1]:g} s. A robot that reaches "
+        f"{FULL.pushed_seconds:g} s counts as having survived."
     )
     captions = {hips: caption.format("locked hips" if hips == "locked" else hips) for hips in HIPS}
     told = groups(rows, "hips").items()

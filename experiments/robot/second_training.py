@@ -17,6 +17,7 @@ from experiments.record import Row
 from experiments.robot import best_known
 from experiments.robot.balance_trainings import JUDGING_SEED, NAMES, PUSH_100
 from experiments.robot.best_known import BEST, KNOWN, NEUTRAL, SearchExperiment
+from experiments.robot.conditions import SETTINGS
 from experiments.shapes import groups, legend, panels, strips
 from experiments.tables import WORDS, shown, survived_pushes, table
 from sarah.control.parameters import Parameters
@@ -173,8 +174,8 @@ def closeness(rows: DataFrame) -> str:
     ]
     caption = (
         "Score as a share of the best known one in the engine: mean with its standard error, and lowest. Number of"
-        " trainings within 5 % of the best known score, with its 95 % interval. Survival of pushes of 100 N: mean and"
-        " lowest."
+        " trainings within 5 % of the best known score, with its 95 % interval. Survival of"
+        f" {FULL.surviving} pushes of 100 N from all directions: mean and lowest. {SETTINGS}"
     )
     formats = dict.fromkeys(("of_best", "survival_100", "lowest", "lowest_survival"), ".1%")
     return table(DataFrame(found), list(found[0]), caption, **formats)

@@ -14,7 +14,7 @@ from typing import NamedTuple
 import tyro
 from pandas import DataFrame
 
-from experiments.experiment import Experiment, product, survival_of
+from experiments.experiment import EPISODE, Experiment, product, survival_of
 from experiments.record import Row
 from experiments.tables import format_of, table
 from sarah.control.pattern_generator import STAND_SECONDS
@@ -47,6 +47,7 @@ class Outcome(NamedTuple):
 class SensorFaults(Experiment):
     """Faults of sensors and of the control loop, without a push."""
 
+    depends_on = (*EPISODE, "sarah/drivers")
     seeds: int = 20  # number of robots
     seconds: float = 10.0  # time after the fault, in s
     faults: tyro.conf.Suppress[tuple[str, ...]] = tuple(FAULTS)  # which

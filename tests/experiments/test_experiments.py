@@ -18,7 +18,7 @@ from pytest import CaptureFixture, MonkeyPatch
 from experiments import record
 from experiments.command import age, main
 from experiments.experiment import Experiment, product
-from experiments.found import BENCHMARKS, ENDURANCE, EXPERIMENTS, find, paths_of, questions
+from experiments.found import BENCHMARKS, ENDURANCE, EXPERIMENTS, find, paths_of, questions, sources
 from experiments.making import make
 from experiments.record import ROOT, Result, Row
 from sarah.errors import ConfigurationError, SarahError
@@ -31,6 +31,10 @@ class Squares(Experiment):
     workers: int = 0
     count: int = 3
     fails_at: int | None = None  # number at which the power fails
+
+    @property
+    def options(self) -> str:
+        return super().options.partition(", fails_at")[0]  # a failure is none
 
     def cases(self) -> list[Row]:
         return product(kind=["whole"], number=range(self.count))
@@ -155,6 +159,49 @@ def test_another_command_begins_anew_and_cases_can_be_chosen(tmp_path: Path) -> 
         begun = made(tmp_path, Squares(fails_at=1), command=words)
     assert begun.command.startswith("run other squares")
     assert [row["number"] for row in made(tmp_path / "some", Squares(), "--only", "number=2").rows] == ["2", "2"]
+
+
+def test_a_changed_experiment_does_not_go_on_with_rows_of_the_former(tmp_path: Path) -> None:
+    begun = made(tmp_path, Squares(fails_at=2))
+    assert begun.options == "count=3"
+    assert [row["number"] for row in made(tmp_path, Squares(count=2)).rows] == ["0", "0", "1", "1"]
+
+
+def test_rows_of_cases_that_an_experiment_no_longer_has_go(tmp_path: Path) -> None:
+    path = tmp_path / "squares.csv"
+    made(tmp_path, Squares(fails_at=2))
+    path.write_text(path.read_text().replace("whole,1,", "half,1,"))
+    assert [row["number"] for row in made(tmp_path, Squares()).rows] == ["0", "0", "1", "1", "2", "2"]
+
+
+NO_RESULTS = {
+    "question": "missing 1 required positional argument: 'question'",
+    "colour": "got an unexpected keyword argument 'colour'",
+    "missing": "invalid literal",
+    "cells": "a row has more or fewer cells than columns: whole",
+    "letters": "can't decode byte",
+}
+
+
+@pytest.mark.parametrize("fault", NO_RESULTS)
+def test_what_is_no_result_is_said_in_a_line(fault: str, tmp_path: Path) -> None:
+    head = b"# question: How large?\n# command: run\n# commit: unknown\n# date: 2026-01-02\n"
+    rows = b"kind,number\nwhole,1\n"
+    content = {
+        "question": head.partition(b"\n")[2] + rows,
+        "colour": head + b"# colour: red\n" + rows,
+        "missing": head + b"# missing: some\n" + rows,
+        "cells": (head + rows)[:-3],
+        "letters": head + rows + b"\xff,1\n",
+    }
+    (tmp_path / "squares.csv").write_bytes(content[fault])
+    with pytest.raises(record.ResultError, match=rf"squares[.]csv is no result: .*{NO_RESULTS[fault]}"):
+        record.read("squares", tmp_path)
+
+
+def test_a_result_depends_on_its_experiment_and_on_those_that_this_takes_from() -> None:
+    files = {Path(file).stem for file in sources("second_training")}
+    assert files == {"second_training", "best_known", "balance_trainings", "conditions"}
 
 
 def test_a_new_module_is_a_change(tmp_path: Path, monkeypatch: MonkeyPatch) -> None:

@@ -1,5 +1,6 @@
 """The pages show today's results, read as they lie, and make of rows what one computes by hand."""
 
+import dataclasses
 import math
 import re
 from collections import Counter
@@ -20,9 +21,9 @@ from experiments.naf.learners import COMPARED, PUBLISHED, WIDER, WITH_NAFS_SETTI
 from experiments.naf.mujoco_tasks import FULL, TASKS, answer, figure, four_algorithms
 from experiments.naf.standard_tasks import answer as answer_of_ranges
 from experiments.naf.standard_tasks import ends, over_seeds
-from experiments.pages import write
+from experiments.pages import show, write
 from experiments.record import ROOT
-from experiments.robot import engines, landscape, physics
+from experiments.robot import engines, hard_pushes, landscape, physics
 from experiments.robot.conditions import askew, biased
 from experiments.robot.first_training import settling
 from experiments.robot.hard_pushes import difference
@@ -146,6 +147,37 @@ def test_the_difference_counts_pushes_that_only_one_survives() -> None:
     assert found[1:] == approx((0.06 - 1.96 * error, 0.06 + 1.96 * error))
     # Nobody knows a difference exactly from 18 pushes: 0 +- 1.96 sqrt(1 / 20 / 20).
     assert tuple(difference("s" * 18, "s" * 18).values()) == approx((0.0, -1.96 / 20, 1.96 / 20))
+
+
+@pytest.mark.parametrize(("apart", "told"), [(30, "agree better there"), (3, "cannot be told")])
+def test_engines_agree_better_only_by_more_than_chance(apart: int, told: str) -> None:
+    """In PyBullet the standard physics loses some of 100 pushes that the reference physics survives."""
+    outcomes = {"standard": ("l" * apart + "s" * (100 - apart), "s" * 100), "reference": ("s" * 99 + "l", "s" * 100)}
+    rows = DataFrame(
+        {"push_n": 125.0, "controller": "shipped V", "engine": engine, "physics": physics, "outcomes": pushes}
+        for physics, both in outcomes.items()
+        for engine, pushes in zip(("pybullet", "mujoco"), both, strict=True)
+    )
+    assert told in hard_pushes.answer(rows.assign(survival=rows.outcomes.str.count("s") / 100))
+
+
+def test_a_page_says_that_options_were_others(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    former = dataclasses.replace(record.read("physics"), options="seeds=8, sets=6, time_limit=8.0")
+    monkeypatch.setattr(record, "read", lambda name: former)
+    show("physics.differences")
+    said = " ".join(capsys.readouterr().out.split())
+    assert "Its options were not those of today: seeds=8, sets=6, time_limit=8.0." in said
+    former = dataclasses.replace(former, options=physics.FULL.options)
+    show("physics.differences")
+    assert "options" not in capsys.readouterr().out
+
+
+def test_physics_is_said_to_be_too_coarse_if_it_is() -> None:
+    rows = record.read("physics").table
+    coarse = rows.assign(score=rows.score.where(rows.setting != "standard", 0.5 * rows.score))
+    assert "The standard physics is too coarse. In 0 of " in physics.answer(coarse)
 
 
 def training(seed: int, algorithm: str, final: tuple[float, ...], learning: float) -> dict[str, object]:
