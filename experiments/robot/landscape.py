@@ -14,6 +14,7 @@ from pandas import DataFrame
 
 from experiments.experiment import Experiment
 from experiments.record import Row
+from experiments.robot.conditions import TIME_LIMIT
 from experiments.robot.engines import NEWTONS, settings
 from experiments.shapes import groups, line_panels
 from experiments.tables import span, table, turned_table
@@ -32,7 +33,7 @@ VALUES = {
 }
 """Values of every parameter by task, while the others keep those of the centre."""
 EPISODES = {"stepping": 3, "balance": 12}
-SECONDS = {"stepping": 12.0, "balance": 8.0}
+SECONDS = {"stepping": 12.0, "balance": TIME_LIMIT}
 
 
 @dataclass(frozen=True)
@@ -40,7 +41,7 @@ class Landscape(Experiment):
     """One parameter at a time, in both engines."""
 
     points: int = 10  # number of values of each parameter
-    time_limit: float | None = None  # time limit of an episode, in s; by default 12 s, and 8 s with pushes
+    time_limit: float | None = None  # time limit of an episode, in s; by default 12 s, and 10 s with pushes
 
     def cases(self) -> list[Row]:
         """Each parameter in each engine."""

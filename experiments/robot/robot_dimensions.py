@@ -14,6 +14,7 @@ from pandas import DataFrame
 
 from experiments.experiment import Experiment, product
 from experiments.record import Row
+from experiments.robot.conditions import TIME_LIMIT
 from experiments.shapes import groups
 from experiments.tables import shown, table
 from sarah.control.constants import ControllerConstants
@@ -52,7 +53,7 @@ class RobotDimensions(Experiment):
     pushes: int = 20  # number of pushes in each pair of directions
     unpushed: int = 2  # number of episodes without a push
     time_limit: float = 15.0  # time limit of these, in s
-    pushed_seconds: float = 5.65  # time limit with a push, in s, which comes at 2 to 3 s
+    pushed_seconds: float = TIME_LIMIT  # time limit with a push, in s
 
     def cases(self) -> list[Row]:
         """Each robot with locked hips and with hips that move."""
