@@ -127,7 +127,7 @@ def answer(rows: DataFrame) -> str:
         found, (neutral,) = _summary(group, RECOMMENDED), _known(group, NEUTRAL).survival_100
         survived = survived_pushes(group[group.kind == RECOMMENDED].survival_100, 100.0)
         sentences.append(
-            f"In {WORDS[engine]} the robot survives {survived} after each training. Without the hip law it"
+            f"In {WORDS[engine]} the robot survives {survived} after each training. With locked hips it"
             f" survives {shown(neutral, '.0%')} of them. Under harder pushes the {found['trainings']} trainings"
             f" reach {shown(found['of_best'], '.1%')} of the best known score on average, and {found['within_5_%']} of"
             " them come within 5 % of it."
