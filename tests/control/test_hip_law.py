@@ -40,9 +40,9 @@ def after(law: HipLaw, steady: SensorReading, ticks: int) -> HipLaw:
     return law
 
 
-def law(v1: float = 0.0, v2: float = 0.0, v3: float = 0.0, v4: float = 0.0, servo_error: float = 0.1) -> HipLaw:
-    """The law; a larger ``servo_error`` lets readings stay behind the targets."""
-    return HipLaw(BalanceParameters(v1, v2, v3, v4), DT, ControllerConstants(largest_servo_error=servo_error))
+def law(v1: float = 0.0, v2: float = 0.0, v3: float = 0.0, v4: float = 0.0, **constants: float) -> HipLaw:
+    """The law; a large ``largest_servo_error`` lets readings stay behind the targets."""
+    return HipLaw(BalanceParameters(v1, v2, v3, v4), DT, ControllerConstants(**constants))
 
 
 DEAD_BAND, TIPS = 0.03, 0.2
@@ -199,14 +199,14 @@ def test_loads_are_means_over_a_hundredth_of_a_second(dt: float, averaged: int) 
 @settings(max_examples=30)
 @given(lean=st.floats(-0.2, 0.2), v3=st.floats(-1.0, 1.0))
 def test_foot_in_the_air_steps_to_the_side_of_the_fall(lean: float, v3: float) -> None:
-    stepping = after(law(v3=v3, servo_error=1.0), reading(left=29.0, flexion=(0.0, lean)), ticks=200)
+    stepping = after(law(v3=v3, largest_servo_error=1.0), reading(left=29.0, flexion=(0.0, lean)), ticks=200)
     beyond = math.copysign(max(0.0, abs(lean) - DEAD_BAND), lean)
     assert stepping.flexion[Side.LEFT] == pytest.approx(-0.6 * v3 * beyond, abs=1e-9)
     assert stepping.flexion[Side.RIGHT] == 0.0
 
 
 def test_loaded_legs_do_not_follow_the_fall() -> None:
-    hips = law(v3=1.0, servo_error=1.0)
+    hips = law(v3=1.0, largest_servo_error=1.0)
     for left, low, high in ((31.0, 0.0, 0.0), (29.0, -1.0, -0.05), (31.0, 0.0, 0.0)):  # it lifts its foot, and lands
         after(hips, reading(left=left, right=250.0, flexion=(0.0, 0.2)), ticks=50)
         assert low <= hips.flexion[Side.LEFT] <= high and hips.flexion[Side.RIGHT] == 0.0
@@ -223,14 +223,14 @@ def test_a_leg_that_gives_way_outward_tips_and_v2_does_not(
     loads: tuple[float, float], abduction: tuple[float, float]
 ) -> None:
     """The foot of the leg that carries has gone 0.2 rad inward: 2 (0.2 - 0.15) rad. In the air it counts on."""
-    tipping = after(law(v1=1.0, servo_error=1.0), reading(0.0, 0.0, *loads, abduction=abduction), ticks=100)
+    tipping = after(law(v1=1.0, largest_servo_error=1.0), reading(0.0, 0.0, *loads, abduction=abduction), ticks=100)
     assert tipping.spread == pytest.approx(0.1)
     assert after(tipping, reading(left=0.0, right=0.0, abduction=abduction), ticks=100).spread == pytest.approx(0.1)
     assert after(law(v1=1.0, v2=-2.0), reading(left=0.0, abduction=(0.1, 0.1)), ticks=100).spread == 0.0
 
 
 def test_legs_spread_and_close_at_their_speeds() -> None:
-    tipped = law(v1=1.0, servo_error=1.0)
+    tipped = law(v1=1.0, largest_servo_error=1.0)
     tipping = reading(left=0.0, abduction=(0.0, 0.3))
     spreads = [after(tipped, tipping, ticks=1).spread for _ in range(3)]
     assert spreads == pytest.approx([0.015, 0.03, 0.045])
