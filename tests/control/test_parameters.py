@@ -4,6 +4,7 @@ import dataclasses
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -38,12 +39,30 @@ def test_the_ends_and_the_centre_of_a_box_are_those_of_an_action() -> None:
 def test_parameters_out_of_their_box_are_refused() -> None:
     for values, message in (
         ((0.4, 1.3, 0.1, 1.0), r"parameters must be 5 numbers \(P1 to P5\), not 4"),
+        ((0.4, 1.3, 0.1, 1.0, 1.0, 1.0), r"parameters must be 5 numbers \(P1 to P5\), not 6"),
         ((0.4, 1.3, 0.1, 1.0, math.nan), "P5 must be between 0 and 2, not nan"),
         ((-0.1, 1.3, 0.1, 1.0, 1.0), "P1 must be between 0 and 2, not -0.1"),
         ((0.4, 2.1, 0.1, 1.0, 1.0), "P2 must be between 0 and 2, not 2.1"),
     ):
         with pytest.raises(ConfigurationError, match=message):
             Box(STEPPING_PARAMETERS).checked(values)
+
+
+def test_an_end_may_be_missed_by_the_rounding_of_32_bit_numbers() -> None:
+    ends = {2.0: 2.0 + 2.0**-21, -2.0: -2.0 - 2.0**-21}  # two roundings of a number near 2
+    assert ODD.checked([*[ends[2.0]] * 4, np.nextafter(np.float32(0.7), np.float32(1.0))]) == (2.0, 2.0, 2.0, 2.0, 0.7)
+    lowest = [*[ends[-2.0]] * 4, np.nextafter(np.float32(0.1), np.float32(0.0))]
+    assert ODD.checked(lowest) == (-2.0, -2.0, -2.0, -2.0, 0.1)
+    for v1, odd in ((2.0000007, 0.4), (-2.0000007, 0.4), (0.0, 0.7000003), (0.0, 0.0999997)):
+        with pytest.raises(ConfigurationError, match="must be between"):
+            ODD.checked([v1, 0.0, 0.0, 0.0, odd])
+
+
+@pytest.mark.parametrize("count", [4, 6])
+def test_a_box_takes_a_value_for_each_parameter(count: int) -> None:
+    for change in (ODD.clipped, ODD.shares, ODD.at_shares, ODD.scaled, ODD.unscaled):
+        with pytest.raises(ValueError):
+            change([0.5] * count)
 
 
 @given(st.tuples(*[st.floats(-2.0, 2.0)] * 4, st.floats(0.1, 0.7)))
@@ -55,7 +74,7 @@ def test_values_are_their_actions_and_their_shares(values: tuple[float, ...]) ->
 
 
 VALUES = (
-    *(STANDARD_CONSTANTS, STEPPING_PARAMETERS[0], SteppingParameters(*PAPER_STEPPING)),
+    *(STANDARD_CONSTANTS, STEPPING_PARAMETERS[0], ODD, SteppingParameters(*PAPER_STEPPING)),
     *(BalanceParameters(1.0, 0.0, 0.0, 0.0), PhaseChange(Phase.LAND, by_sensors=True)),
 )
 
