@@ -1,7 +1,7 @@
 """How many changes to core files do the tests of their package see?
 
 One change after another is made to a copy of a file. Each is a mutant, and tests that fail kill it.
-``survivors.tsv`` says which mutants nothing can kill, by their changed line, and why.
+``survivors.tsv`` says of which mutants no test is wanted, by their changed line, and why.
 """
 
 import csv
@@ -24,8 +24,7 @@ from experiments.record import ROOT, ResultError, Row
 from experiments.tables import shown, table
 
 LEAST_KILLED = 0.9
-"""Share of each file's mutants that its tests have to kill, without those of which ``survivors.tsv`` says that nothing
-can."""
+"""Share of each file's mutants that its tests have to kill, without those that ``survivors.tsv`` explains."""
 EXPLAINED = read_csv(Path(__file__).with_name("survivors.tsv"), sep="\t", quoting=csv.QUOTE_NONE)
 COPIED = ("agents", "sarah", "tests", "urdf", "setup.cfg")
 
@@ -103,9 +102,9 @@ class Mutants(Timing):
                 else:
                     shutil.copy2(ROOT / name, folder)
             row = judged(file, SUBJECTS[file], Path(folder), self.count)
-        mortal = row["mutants"] - row["explained"]
-        if row["killed"] < LEAST_KILLED * mortal:
-            raise ResultError(f"tests kill only {row['killed']} of the {mortal} mutants of {file} that can be killed")
+        unexplained = row["mutants"] - row["explained"]
+        if row["killed"] < LEAST_KILLED * unexplained:
+            raise ResultError(f"tests kill only {row['killed']} of the {unexplained} mutants of {file} that nobody explains")
         yield row
 
 
@@ -166,6 +165,6 @@ def answer(rows: DataFrame) -> str:
 def killed(rows: DataFrame) -> str:
     """Mutants of each file."""
     shares = rows.assign(share_killed=rows.killed / rows.mutants)
-    caption = "Mutants of each file: killed by its tests, survivors that no test can kill, and other survivors."
+    caption = "Mutants of each file: killed by its tests, survivors that are explained, and other survivors."
     columns = ["file", "mutants", "killed", "share_killed", "explained", "survived"]
     return table(shares, columns, caption, share_killed=".1%")
