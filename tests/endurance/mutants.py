@@ -104,7 +104,9 @@ class Mutants(Timing):
             row = judged(file, SUBJECTS[file], Path(folder), self.count)
         unexplained = row["mutants"] - row["explained"]
         if row["killed"] < LEAST_KILLED * unexplained:
-            raise ResultError(f"tests kill only {row['killed']} of the {unexplained} mutants of {file} that nobody explains")
+            raise ResultError(
+                f"tests kill only {row['killed']} of the {unexplained} mutants of {file} that nobody explains"
+            )
         yield row
 
 
