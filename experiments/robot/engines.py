@@ -106,11 +106,12 @@ def of_trainings(rows: DataFrame) -> DataFrame:
 def answer(rows: DataFrame) -> str:
     """How far the engines agree."""
     told = of_sets(rows)
-    good = told["stepping"][told["stepping"].pybullet_score >= GOOD]
+    is_good = told["stepping"].pybullet_score >= GOOD
+    good, others = (told["stepping"][chosen].difference for chosen in (is_good, ~is_good))
     return (
-        f"Well, where the robot steps well. Of {len(told['stepping'])} sets of P1 to P5, {len(good)} score at least "
-        f"{GOOD} in PyBullet. On these MuJoCo's score differs by {span(good.difference, '+.0%')}. Under pushes of "
-        f"{NEWTONS:.0f} N chance decides more, and it differs by {span(told['balance'].difference, '+.0%')}."
+        f"With sets of P1 to P5 that score at least {GOOD} in PyBullet, MuJoCo's score differs by "
+        f"{span(good, '+.0%')}. With worse ones it differs by {span(others, '+.0%')}. Under pushes of "
+        f"{NEWTONS:.0f} N, where each fall counts, it differs by {span(told['balance'].difference, '+.0%')}."
     )
 
 
@@ -131,7 +132,7 @@ def transfer(rows: DataFrame) -> str:
     kept = {task: group.kept for task, group in groups(found, "task").items()}
     survive = (found[SURVIVAL] == 1.0).all(axis=1).sum()
     return (
-        f"Yes, without retraining. In the other engine Second Trainings keep {span(kept['balance'], '.0%')} of their "
+        f"In the other engine, without retraining, Second Trainings keep {span(kept['balance'], '.0%')} of their "
         f"score. First Trainings keep {span(kept['stepping'], '.0%')}; their median is "
         f"{shown(kept['stepping'].median(), '.0%')}. With the parameters of "
         f"{share_of(survive, len(found), 'trainings')} the robot survives every episode in both engines."

@@ -90,9 +90,9 @@ def answer(rows: DataFrame) -> str:
     hips = [cells.lateral_survival["V1 = V3 = 1", f"hips ±{offset} m"] for offset in ("0.10", "0.12")]
     short, long, narrow, wide = (shown(survival, ".0%") for survival in (*sole, *hips))
     return (
-        f"Long soles save the robot from pushes from front and back. With locked hips it survives {short} of them with "
-        f"the shortest soles tried, and {long} with the longest. Hips far apart let V1 save it from pushes from the "
-        f"sides. With V1 = V3 = 1 it survives {narrow} of them with hips at ±0.10 m, and {wide} at ±0.12 m."
+        f"Of pushes from front and back the robot survives {short} with locked hips and the shortest soles tried, and "
+        f"{long} with the longest. Of pushes from the sides it survives {narrow} with V1 = V3 = 1 and hips at ±0.10 m, "
+        f"and {wide} at ±0.12 m."
     )
 
 

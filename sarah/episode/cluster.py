@@ -11,6 +11,7 @@ import threading
 from collections.abc import Callable, Iterator
 from concurrent import futures
 from functools import partial
+from multiprocessing.resource_tracker import ensure_running
 from typing import TYPE_CHECKING, Any
 
 from sarah.errors import WorkersError, one_line
@@ -219,7 +220,7 @@ def _started_client(count: int, stack: contextlib.ExitStack) -> Client:
             os.nice(NICENESS)
 
     environment = {name: value for name, value in dask.config.get(ENVIRONMENT).items() if name != FREES_MEMORY}
-    with dask.config.set({**UNWATCHED, **UNLIMITED, ENVIRONMENT: environment}):
+    with _interrupted_later(), dask.config.set({**UNWATCHED, **UNLIMITED, ENVIRONMENT: environment}):
         cluster = LocalCluster(
             n_workers=count,
             threads_per_worker=1,
@@ -229,7 +230,30 @@ def _started_client(count: int, stack: contextlib.ExitStack) -> Client:
             memory_limit=0,
             silence_logs=logging.CRITICAL,
         )
-    stack.enter_context(contextlib.closing(cluster))
-    client = stack.enter_context(contextlib.closing(Client(cluster)))
-    client.register_plugin(Serve())
+        stack.enter_context(contextlib.closing(cluster))
+        client = stack.enter_context(contextlib.closing(Client(cluster)))
+        client.register_plugin(Serve())
     return client
+
+
+@contextlib.contextmanager
+def _interrupted_later() -> Iterator[None]:
+    """Let signals that end a command come at the end of this context, because Dask cannot stop while it starts.
+
+    Processes that are started ignore Ctrl-C from their first moment.
+    """
+    is_main = threading.current_thread() is threading.main_thread()  # no other may have handlers
+    usual = {int(number): signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM) if is_main}
+    came: list[int] = []
+    ensure_running()  # otherwise it starts with the first worker, and lets Ctrl-C through again
+    for number in usual:
+        signal.signal(number, lambda number, _: came.append(number))
+    mask = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+        for number, handler in usual.items():
+            signal.signal(number, handler)
+        for number in came:
+            signal.raise_signal(number)

@@ -7,6 +7,8 @@ import shutil
 import signal
 import socket
 import sys
+import threading
+import time
 from pathlib import Path
 from typing import Any
 
@@ -104,6 +106,21 @@ def test_workers_ignore_an_interrupt_and_answer_in_order(workers: Workers) -> No
     specs = [EpisodeSpec(PAPER_STEPPING, seed, config=EpisodeConfig(time_limit=1.5)) for seed in range(6)]
     assert list(workers.simulate_all(specs)) == [simulate(spec) for spec in specs]
     assert workers.client.run(os.getpid) == pids
+
+
+def test_an_interrupt_waits_until_workers_have_started(capfd: pytest.CaptureFixture[str]) -> None:
+    def interrupt_all() -> None:
+        while not (children := psutil.Process().children(recursive=True)):
+            time.sleep(0.01)
+        time.sleep(0.5)
+        for process in (*children, *psutil.Process().children(recursive=True), psutil.Process()):
+            process.send_signal(signal.SIGINT)
+
+    with pytest.raises(KeyboardInterrupt):
+        threading.Thread(target=interrupt_all).start()
+        with Workers(1):
+            pytest.fail("the interrupt did not come")
+    assert capfd.readouterr().err == ""
 
 
 def test_workers_listen_to_this_machine_only(workers: Workers) -> None:
