@@ -15,7 +15,7 @@ from pandas import DataFrame
 
 from experiments.experiment import product
 from experiments.record import Row
-from experiments.tables import shown, span, table
+from experiments.tables import shown, so_far, span, table
 from experiments.trainings import TrainingExperiment, identity
 from sarah.reports.judging import evaluations_of
 from sarah.reports.race import run_entry
@@ -70,13 +70,17 @@ FULL = Race()
 QUICK = Race(time_limit=2.0, seeds=1, budget=5, evaluations=1)
 
 
-def ranked(rows: DataFrame, task: str) -> DataFrame:
-    """A row for each algorithm, the quickest first, of the seeds on which all algorithms have been trained."""
+def complete(rows: DataFrame, task: str) -> DataFrame:
+    """Trainings of a task with the seeds on which all algorithms have been trained."""
     rows = rows[rows.task == task]
-    rows = rows.groupby("seed").filter(lambda group: len(group) == rows.algorithm.nunique())
-    rankings_of_all = rankings([curve_of(row) for row in rows.to_dict("records")], reference="naf")
-    found = DataFrame([rankings_of_all.columns(row) for row in rankings_of_all.rows])
-    learning = rows.groupby("algorithm").score_while_learning
+    return rows.groupby("seed").filter(lambda group: len(group) == len(ALGORITHMS))
+
+
+def ranked(trainings: DataFrame) -> DataFrame:
+    """A row for each algorithm, the quickest first."""
+    found_rankings = rankings([curve_of(row) for row in trainings.to_dict("records")], reference="naf")
+    found = DataFrame([found_rankings.columns(row) for row in found_rankings.rows])
+    learning = trainings.groupby("algorithm").score_while_learning
     found["score_while_learning"] = found.algorithm.map(learning.mean())
     found["score_while_learning_error"] = found.algorithm.map(learning.sem())
     return found
@@ -91,10 +95,14 @@ def curve_of(row: Mapping[Any, Any]) -> RaceCurve:
 
 def answer(rows: DataFrame) -> str:
     """Final scores, and which algorithms NAF can be told from."""
-    return f"{_compared(ranked(rows, 'stepping'), 'First')}\n\n{_compared(ranked(rows, 'balance'), 'Second')}"
+    return f"{_compared(rows, 'stepping', 'First')}\n\n{_compared(rows, 'balance', 'Second')}"
 
 
-def _compared(algorithms: DataFrame, training: str) -> str:
+def _compared(rows: DataFrame, task: str, training: str) -> str:
+    trainings = complete(rows, task)
+    if trainings.empty:
+        return f"The race of the {training} Training is still to be made."
+    algorithms = ranked(trainings)
     scores = algorithms.set_index("algorithm").final_score
     better, worse = algorithms.over_naf_low > 0.0, algorithms.over_naf_high < 0.0
     fewest = algorithms.episodes_to_95.min()
@@ -113,35 +121,34 @@ def _names(algorithms: DataFrame) -> str:
 def _final(rows: DataFrame, task: str) -> str:
     """Final scores."""
     pairs = [f"{column}{end}" for column in ("over_naf", "final_at_95") for end in ("", "_low", "_high")]
-    caption = (
-        f"{_trainings(task)}: mean final score with its standard error, its difference from NAF's and the number of "
-        f"trainings that end with 95 % of the best known score, both with 95 % intervals."
+    columns = ["algorithm", "final_score", "final_score_error", *pairs]
+    what = (
+        "mean final score with its standard error, its difference from NAF's and the number of trainings that end with "
+        "95 % of the best known score, both with 95 % intervals"
     )
-    return table(ranked(rows, task), ["algorithm", "final_score", "final_score_error", *pairs], caption, over_naf=".3f")
+    return _table(rows, task, columns, what, over_naf=".3f")
 
 
 def _way(rows: DataFrame, task: str) -> str:
     """The way there."""
-    shown_columns = [f"{column}_{share}" for share in (90, 95) for column in ("episodes_to", "held")]
-    learning = ["score_while_learning", "score_while_learning_error", "wall_time_s"]
-    caption = (
-        f"{_trainings(task)}: median number of episodes until 90 and 95 % of the best known score are held, how many "
-        f"trainings hold them, score of the episodes tried, and time of a training."
+    shares = [f"{column}_{share}" for share in (90, 95) for column in ("episodes_to", "held")]
+    columns = ["algorithm", *shares, "score_while_learning", "score_while_learning_error", "wall_time_s"]
+    what = (
+        "median number of episodes until 90 and 95 % of the best known score are held, how many trainings hold them, "
+        "score of the episodes tried, and time of a training"
     )
-    return table(
-        ranked(rows, task),
-        ["algorithm", *shown_columns, *learning],
-        caption,
-        learning=".2f",
-        episodes_to_90=".0f",
-        episodes_to_95=".0f",
-    )
+    return _table(rows, task, columns, what, learning=".2f", episodes_to_90=".0f", episodes_to_95=".0f")
 
 
-def _trainings(task: str) -> str:
-    budget, first, _ = TASKS[task]
+def _table(rows: DataFrame, task: str, columns: list[str], what: str, **formats: str) -> str:
+    """Columns of the algorithms; the caption says of which trainings."""
+    trainings, (budget, first, _) = complete(rows, task), TASKS[task]
+    if trainings.empty:
+        return "*Still to be made.*"
     pushes = ", with pushes of 100 to 125 N, half of them from front and back" * (task == "balance")
-    return f"Seeds {first} to {first + FULL.seeds - 1}, {budget} episodes each, in MuJoCo{pushes}"
+    seeds = so_far(trainings.seed.nunique(), FULL.seeds)
+    caption = f"Trainings of {budget} episodes in MuJoCo{pushes} (seeds from {first} on: {seeds}): {what}."
+    return table(ranked(trainings), columns, caption, **formats)
 
 
 final_stepping, final_balance = (partial(_final, task=task) for task in TASKS)

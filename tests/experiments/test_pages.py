@@ -23,15 +23,16 @@ from experiments.naf.standard_tasks import answer as answer_of_ranges
 from experiments.naf.standard_tasks import ends, over_seeds
 from experiments.pages import show, write
 from experiments.record import ROOT
-from experiments.robot import engines, hard_pushes, landscape, physics
+from experiments.robot import engines, hard_pushes, landscape, physics, race
 from experiments.robot.conditions import askew, biased
 from experiments.robot.first_training import settling
 from experiments.robot.hard_pushes import difference
-from experiments.robot.race import columns, curve_of, ranked
+from experiments.robot.race import columns, complete, curve_of, ranked
 from experiments.robot.recognised import BEST, CAREFUL, NEAREST, compared, verdicts
 from experiments.tables import heading, shown, span, survived_pushes, table, turned_table
 from sarah.agents import NAF
 from sarah.reports.race_entry import RaceCurve
+from sarah.runs.config import ALGORITHMS
 from sarah.simulation.randomisation import SensorConditions
 
 PAGES = [
@@ -192,13 +193,24 @@ def test_a_row_holds_the_curve_of_its_training() -> None:
 
 
 def test_only_seeds_with_all_algorithms_are_ranked() -> None:
-    rows = [training(0, "naf", (0.5, 0.7), 0.2), training(0, "tpe", (0.6, 0.9), 0.4)]
-    rows += [training(1, "naf", (0.7, 0.9), 0.3), training(1, "tpe", (0.7, 0.9), 0.5)]
-    rows += [training(2, "naf", (0.0, 0.0), 0.0)]
-    naf, tpe = ranked(DataFrame(rows), "stepping").set_index("algorithm").loc[["naf", "tpe"]].to_dict("records")
+    finals = {"naf": ((0.5, 0.7), (0.7, 0.9)), "tpe": ((0.6, 0.9), (0.7, 0.9))}
+    rows = [
+        training(seed, algorithm, finals.get(algorithm, ((0.1, 0.1),) * 2)[seed], 0.2 + 0.1 * seed)
+        for seed in range(2)
+        for algorithm in ALGORITHMS
+    ]
+    trainings = complete(DataFrame([*rows, training(2, "naf", (0.0, 0.0), 0.0)]), "stepping")
+    naf, tpe = ranked(trainings).set_index("algorithm").loc[["naf", "tpe"]].to_dict("records")
     assert (naf["runs"], tpe["runs"]) == (2, 2)
     assert (round(naf["final_score"], 9), round(tpe["over_naf"], 9)) == (0.7, 0.075)
     assert (round(naf["score_while_learning"], 9), round(naf["score_while_learning_error"], 9)) == (0.25, 0.05)
+
+
+def test_a_race_of_one_task_is_shown_before_the_other_is_run() -> None:
+    rows = DataFrame([training(0, algorithm, (0.5, 0.7), 0.2) for algorithm in ALGORITHMS])
+    assert "The race of the Second Training is still to be made." in race.answer(rows)
+    assert "(seeds from 100 on: 1 of 20 so far)" in race.final_stepping(rows)
+    assert race.way_balance(rows) == "*Still to be made.*"
 
 
 def course(algorithm: str, seed: int, *returns: float, task: str = "Hopper-v5") -> list[dict]:
