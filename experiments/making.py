@@ -61,8 +61,9 @@ def make(module: ModuleType, command: str, arguments: Sequence[str]) -> Path:
     place.mkdir(parents=True, exist_ok=True)
     result = _begun(module, experiment, place, whole)
     left = _left(cases, result)
-    if result.name in record.names() and (known := record.read(result.name)).minutes:
-        minutes = known.minutes * len(left) / max(1, len(every) - known.missing)
+    if result.name in record.names() and (known := record.read(result.name)).minutes and known.rows:
+        made = len({tuple(row.get(column) for column in every[0]) for row in known.rows})
+        minutes = known.minutes * len(left) / made
         about = "a minute or less" if minutes < 1.5 else f"about {minutes:.0f} minutes"
         print(f"that takes {about} with one worker", file=sys.stderr)
     _compute(experiment, left, result, place)

@@ -133,6 +133,17 @@ def test_a_complete_result_stays_until_the_new_one_is(tmp_path: Path, monkeypatc
     assert not begun.exists()
 
 
+def test_how_long_it_takes_is_said_of_the_cases_that_are_left(
+    tmp_path: Path, monkeypatch: MonkeyPatch, capsys: CaptureFixture[str]
+) -> None:
+    known = dataclasses.replace(made(tmp_path, Squares()), minutes=30.0)
+    record.write(known, tmp_path)
+    monkeypatch.setattr(record.names, "__defaults__", (tmp_path,))
+    monkeypatch.setattr(record.read, "__defaults__", (tmp_path,))
+    made(tmp_path / "other", Squares(), "--count", "1")
+    assert "that takes about 10 minutes with one worker" in capsys.readouterr().err
+
+
 def test_rows_of_before_keep_what_their_head_says(tmp_path: Path) -> None:
     begun = made(tmp_path, Squares(fails_at=1))
     record.write(dataclasses.replace(begun, tree="dirty", remark="Squares were rounder."), tmp_path)
