@@ -41,6 +41,8 @@ from sarah.training import recognise
 
 HELP_WIDTH = 86
 """Of a command's help, in characters: as wide as the page."""
+OF_SETTINGS = re.compile(r"╭─ (?:agent|episode)[.\w]* options ─+╮\n(?:│.*\n)*╰─+╯\n?")
+"""Boxes of a command's help with the settings that another page lists."""
 
 
 def from_code(name: str) -> None:
@@ -204,7 +206,7 @@ def recognising_part() -> Iterator[str]:
 
 
 def commands_part() -> Iterator[str]:
-    """What every command says to ``--help``, in the order of setup.cfg."""
+    """What every command says to ``--help``, without the settings of a training, in the order of setup.cfg."""
     environment = {**os.environ, "COLUMNS": str(HELP_WIDTH), "NO_COLOR": "1"}
     for command in metadata.entry_points(group="console_scripts"):
         if command.name.startswith("sarah-"):
@@ -215,7 +217,8 @@ def commands_part() -> Iterator[str]:
                 textwrap.fill(line, HELP_WIDTH) if len(line) > HELP_WIDTH else line.rstrip()
                 for line in process.stdout.splitlines()
             )
-            yield f"## {command.name}\n\n```text\n{chr(10).join(lines).strip()}\n```\n"
+            text = OF_SETTINGS.sub("", "\n".join(lines) + "\n").strip()
+            yield f"## {command.name}\n\n```text\n{text}\n```\n"
 
 
 def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> Iterator[str]:
