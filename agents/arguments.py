@@ -3,6 +3,7 @@
 import re
 import reprlib
 import sys
+from functools import partial
 from numbers import Integral, Real
 from typing import Any, TypeAlias
 
@@ -94,7 +95,12 @@ def checked_schedule(
         return FloatSchedule(float(checked_number(name, value, lowest, highest)))
     for progress_remaining in (1, 0):
         checked_number(f"{name}({progress_remaining})", value(progress_remaining), lowest, highest)
-    return FloatSchedule(value)
+    return FloatSchedule(partial(_until_its_end, value))
+
+
+def _until_its_end(schedule: Schedule, progress_remaining: float) -> float:
+    """Value of a schedule, which stays at its end: the last rollout may take more steps than were asked for."""
+    return schedule(max(progress_remaining, 0.0))
 
 
 def check_actions(space: spaces.Box) -> None:

@@ -152,6 +152,7 @@ class NAF(OffPolicyAlgorithm):
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
         self.watch = Watch()
+        self.earlier_timesteps = 0
 
         if _init_setup_model:
             self._setup_model()
@@ -224,7 +225,8 @@ class NAF(OffPolicyAlgorithm):
         average_parameters = get_ema_multi_avg_fn(1 - self.tau)
 
         # A small replay buffer has forgotten some, and a loaded one has others
-        n_transitions = max(self.num_timesteps, self.replay_buffer.size() * self.replay_buffer.n_envs)
+        n_transitions = self.earlier_timesteps + self.num_timesteps
+        n_transitions = max(n_transitions, self.replay_buffer.size() * self.replay_buffer.n_envs)
         losses, w_losses, mean_q_values, seconds = [], [], [], 0.0
         for _ in range(gradient_steps):
             # Sample replay buffer
@@ -264,6 +266,8 @@ class NAF(OffPolicyAlgorithm):
             polyak_update(self.batch_norm_stats, self.batch_norm_stats_target, 1.0)
             seconds += time.perf_counter() - start
 
+        # What is asked of the networks between updates is asked of all units
+        self.policy.set_training_mode(False)
         # Increase update counter
         self._n_updates += gradient_steps
         _warn(self.watch.judge_time(seconds, gradient_steps, parameters, batch_size))
@@ -317,6 +321,8 @@ class NAF(OffPolicyAlgorithm):
         progress_bar: bool = False,
     ) -> SelfNAF:
         """Return a trained model; the arguments are those of all algorithms of stable-baselines3."""
+        if reset_num_timesteps:
+            self.earlier_timesteps += self.num_timesteps
         return super().learn(
             total_timesteps=total_timesteps,
             callback=callback,

@@ -121,11 +121,12 @@ class NAFPolicy(BasePolicy):
         self._build(lr_schedule)
 
     def _build(self, lr_schedule: Schedule) -> None:
-        """Create the networks and the optimizer, and put the target network into evaluation mode."""
+        """Create the networks and the optimizer, and put the networks into evaluation mode."""
         self.q_net = self.make_q_net()
         self.q_net_target = self.make_q_net()
         self.q_net_target.load_state_dict(self.q_net.state_dict())
         self.q_net_target.set_training_mode(False)
+        self.set_training_mode(False)
 
         self.optimizer = self.optimizer_class(  # type: ignore[call-arg]
             self.q_net.parameters(),

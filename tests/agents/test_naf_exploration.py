@@ -68,6 +68,12 @@ def test_they_can_differ_between_dimensions_and_in_time(std, parts):
         np.testing.assert_allclose(actions[begin:end].std(axis=(0, 1)), expected, rtol=0.15, atol=0.002)
 
 
+def test_a_schedule_stays_at_its_end_in_steps_beyond_those_asked_for():
+    model = NAF("MlpPolicy", "Pendulum-v1", exploration_std=lambda left: 0.3 * left, learning_starts=0, train_freq=8)
+    model.learn(60, log_interval=100)
+    assert model.num_timesteps == 64 and model.logger.name_to_value["train/exploration_std"] == 0.0
+
+
 def test_given_action_noise_takes_precedence_in_the_warm_up_too():
     """As in TD3: where it is 2, every action ends at a bound."""
     for mean, learning_starts, expected in ((0.5, 0, 0.5), (2.0, 5, 1.0)):

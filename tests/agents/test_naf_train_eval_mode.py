@@ -47,6 +47,13 @@ def test_a_pass_in_training_mode_an_update_none_in_the_target(model):
     assert not model.policy.training and not model.q_net.training
 
 
+def test_all_units_answer_whoever_asks_outside_of_an_update(model, tmp_path):
+    model.save(tmp_path / "fresh")
+    model.learn(30).save(tmp_path / "trained")
+    for asked in (model, *(NAF.load(tmp_path / name) for name in ("fresh", "trained"))):
+        assert not asked.policy.training and not asked.q_net.training
+
+
 @pytest.mark.parametrize("share", [0.1, 0.9])
 def test_the_share_is_left_out_and_the_mean_stays(share):
     th.manual_seed(0)

@@ -150,17 +150,19 @@ RANKED = dict(replay_buffer_class=RankReplayBuffer, replay_buffer_kwargs=dict(te
 
 @pytest.mark.parametrize(("n_envs", "buffer"), [(1, dict(buffer_size=40)), (4, RANKED), (4, {})])
 def test_all_transitions_count_beside_the_prior_of_mu(n_envs, buffer, monkeypatch):
-    """Those of all environments, and also those that a small replay buffer has forgotten."""
+    """Those of all environments and of earlier calls, and also those that a small replay buffer has forgotten."""
     counted: Any = []
     monkeypatch.setattr("sarah.agents.naf.centre_loss", lambda *args: counted.extend(args[2:]) or centre_loss(*args))
     env = make_vec_env(Drift, n_envs)
     model = NAF("MlpPolicy", env, learning_starts=20, batch_size=8, device="cpu", **buffer).learn(100)
     assert counted[-1] == 100
+    model.learn(20).train(1, 8)
+    assert counted[-1] == 120
     again = NAF("MlpPolicy", env, learning_starts=20, batch_size=8, device="cpu", **buffer)
     again.replay_buffer = model.replay_buffer
     again.learn(20)
     again.train(1, 8)
-    assert counted[-1] == min(120, buffer.get("buffer_size", 120))
+    assert counted[-1] == min(140, buffer.get("buffer_size", 140))
 
 
 def test_a_replay_buffer_of_ones_own_needs_no_rewards():
