@@ -95,12 +95,12 @@ def checked_schedule(
         return FloatSchedule(float(checked_number(name, value, lowest, highest)))
     for progress_remaining in (1, 0):
         checked_number(f"{name}({progress_remaining})", value(progress_remaining), lowest, highest)
-    return FloatSchedule(partial(_until_its_end, value))
+    return FloatSchedule(partial(_within, value, lowest, highest))
 
 
-def _until_its_end(schedule: Schedule, progress_remaining: float) -> float:
-    """Value of a schedule, which stays at its end: the last rollout may take more steps than were asked for."""
-    return schedule(max(progress_remaining, 0.0))
+def _within(schedule: Schedule, lowest: float, highest: float, progress_remaining: float) -> float:
+    """Value of a schedule, which keeps its end in steps beyond those asked for, and its range whatever the rounding."""
+    return min(max(schedule(max(progress_remaining, 0.0)), lowest), highest)
 
 
 def check_actions(space: spaces.Box) -> None:

@@ -35,7 +35,10 @@ def main(package: Package, arguments: Sequence[str]) -> None:
         _print_by_name(ages)
     else:
         name, *options = arguments
-        print(make(find(name, package), f"{package.command} {name}", options))
+        path = make(find(name, package), f"{package.command} {name}", options)
+        print(path)
+        if path.parent == record.RESULTS:
+            print("make results puts it on its page", file=sys.stderr)
 
 
 def _print_by_name(words: dict[str, str]) -> None:

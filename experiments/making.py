@@ -54,19 +54,25 @@ def make(module: ModuleType, command: str, arguments: Sequence[str]) -> Path:
     is_whole = dataclasses.replace(experiment, workers=full.workers) == full and not shared.only
     folder = shared.out or (record.RESULTS if is_whole else OTHER_RESULTS)
     if folder.resolve() == record.RESULTS and (changed := record.changed_files()):
-        raise record.ResultError(f"commit first what a result is made of: {', '.join(changed[:3])} has changes")
+        files = ", ".join(changed[:3])
+        raise record.ResultError(f"commit first what a result is made of, or put it elsewhere: {files} has changes")
     folder.mkdir(parents=True, exist_ok=True)
     whole = re.sub(r" --workers[ =]\S+", "", shlex.join([*command.split(), *arguments]))  # no row depends on them
     place = _place(module.__name__.rpartition(".")[2], folder)
     place.mkdir(parents=True, exist_ok=True)
     result = _begun(module, experiment, place, whole)
     left = _left(cases, result)
-    if result.name in record.names() and (known := record.read(result.name)).minutes and known.rows:
-        made = len({tuple(row.get(column) for column in every[0]) for row in known.rows})
-        minutes = known.minutes * len(left) / made
-        about = "a minute or less" if minutes < 1.5 else f"about {minutes:.0f} minutes"
-        print(f"that takes {about} with one worker", file=sys.stderr)
-    _compute(experiment, left, result, place)
+    if result.rows:
+        print(f"goes on: {len(cases) - len(left)} of {len(cases)} cases are there", file=sys.stderr)
+    if not shared.quick:
+        _say_duration(left, result)
+    try:
+        _compute(experiment, left, result, place)
+    except KeyboardInterrupt:
+        there = place / f"{result.name}.csv"
+        what = f"complete cases are in {there}, and" if there.exists() else "no case is complete yet;"
+        print(f"{what} the same command goes on", file=sys.stderr)
+        raise
     if place != folder:
         record.write(record.read(result.name, place), folder)
         (place / f"{result.name}.csv").unlink()
@@ -131,6 +137,17 @@ def _cells(case: Row) -> dict[str, str]:
     return {column: cell(value) for column, value in case.items()}
 
 
+def _say_duration(left: Sequence[Row], result: Result) -> None:
+    """Say how long the cases that are left will take, as far as those of the result or of the one before tell."""
+    if not result.minutes and result.name in record.names():
+        result = record.read(result.name)
+    if left and result.minutes and result.rows:
+        made = len({tuple(row.get(column) for column in left[0]) for row in result.rows})
+        minutes = result.minutes * len(left) / made
+        about = "a minute or less" if minutes < 1.5 else f"about {minutes:.0f} minutes"
+        print(f"that takes {about} with one worker on a core of its own", file=sys.stderr)
+
+
 def _begun(module: ModuleType, experiment: Experiment, folder: Path, command: str) -> Result:
     """The result that this command has begun with the same options, or a new one."""
     commit = record.commit()
@@ -150,7 +167,6 @@ def _begun(module: ModuleType, experiment: Experiment, folder: Path, command: st
     cases = [_cells(case) for case in experiment.cases()]
     rows = [row for row in before.rows if {column: row.get(column) for column in cases[0]} in cases]
     commits = " ".join(dict.fromkeys([*before.commit.split(), commit]))
-    print(f"goes on after {len(rows)} rows", file=sys.stderr)
     of_rows = {key: getattr(before, key) for key in ("minutes", "tree", "remark", "options")}  # true of those that stay
     used = _listed(versions(), dict(word.split(maxsplit=1) for word in before.versions.split(", ") if word))
     return dataclasses.replace(new, commit=commits, versions=used, rows=rows, **of_rows)

@@ -55,7 +55,7 @@ def answer(rows: DataFrame) -> str:
     seeds = so_far(min(len(naf), len(published)), FULL.seeds)
     medians = [shown(of["return"].median(), ".0f") for of in (published, naf)]
     return (
-        f"As published, V exceeds what rewards allow within {FULL.steps:,} steps in {above}: it comes to "
+        f"On {TASK} as published, V exceeds what rewards allow within {FULL.steps:,} steps in {above}: it comes to "
         f"{span(published.v_over_bound, '.2f')} times its bound. With W in the targets it comes to at most "
         f"{shown(naf.v_over_bound.max(), '.2f')} times its bound. The median return is {medians[0]} as published, and "
         f"{medians[1]} with W (seeds: {seeds})."
@@ -66,4 +66,5 @@ def returns(rows: DataFrame) -> str:
     """Each training at its end."""
     columns = ["algorithm", "seed", "steps", "return", "v_over_bound"]
     found = ends(rows).sort_values(["algorithm", "seed"])
-    return table(found, columns, "Returns at the end.", **{"return": ".0f", "v_over_bound": ".3g"})
+    caption = f"Return on {TASK} at the end of each training, and V over its bound so far, of which 1 is the limit."
+    return table(found, columns, caption, **{"return": ".0f", "v_over_bound": ".2f"})

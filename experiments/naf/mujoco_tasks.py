@@ -103,19 +103,25 @@ def answer(rows: DataFrame) -> str:
     found = ends(rows[rows.seed.isin(SEEDS)])
     naf = found[found.algorithm == "NAF"]
     nearest = naf.sort_values("v_over_bound").iloc[-1]
-    sentences = [_compared(naf, found[found.algorithm == other], other) for other in COMPARED if other != "NAF"]
+    compared = {other: _compared(naf, found[found.algorithm == other], other) for other in COMPARED if other != "NAF"}
+    sentences = [said for said in compared.values() if said]
+    if few := [other for other, said in compared.items() if not said]:
+        sentences.append(f"Too few trainings are made so far to compare {', '.join(few)}.")
     bound = f"V comes to {shown(nearest.v_over_bound, '.2f')} of its bound at most, on {nearest['task']}."
     return " ".join([*sentences, bound])
 
 
 def _compared(naf: DataFrame, others: DataFrame, name: str) -> str:
-    """Where the interval of NAF is above that of another algorithm and where below, and how likely a seed is above."""
+    """Where the interval of NAF is above that of another algorithm and where below, and how likely a seed is above.
+
+    Nothing is said of tasks with too few trainings.
+    """
     ones, of_others = (
         {task: of["return"] for task, of in groups(all_seeds, "task").items()} for all_seeds in (naf, others)
     )
     tasks = [task for task in TASKS if min(len(found.get(task, ())) for found in (ones, of_others)) >= FEWEST]
     if not tasks:
-        return f"Too few trainings are made so far to compare {name}."
+        return ""
     verdicts: dict[str, list[str]] = {}
     for task in tasks:
         (_, low, high), (_, other_low, other_high) = map(interquartile_mean, (ones[task], of_others[task]))
@@ -177,6 +183,8 @@ def same_settings(rows: DataFrame) -> str:
 def _table(rows: DataFrame, algorithms: Collection[str], tasks: Collection[str]) -> str:
     """Ends of trainings: interquartile means over seeds."""
     found = ends(rows[rows.algorithm.isin(algorithms) & rows["task"].isin(tasks) & rows.seed.isin(SEEDS)])
+    if set(found.algorithm) <= {"NAF"}:
+        return "*Still to be made.*"
     columns = ["task", "algorithm", "seeds", "return", "return_low", "return_high", "v_over_bound"]
     caption = (
         f"Mean return of the last {RECENT} evaluations in {STEPS:,} steps: interquartile mean and its 95 % interval."

@@ -4,6 +4,7 @@ Takes the source of the installed version with pip, and runs every test that nam
 need a part of the class that NAF lacks must fail. For these runs this module is also a plugin of pytest.
 """
 
+import argparse
 import inspect
 import os
 import subprocess
@@ -74,6 +75,7 @@ def _is_chosen(item: pytest.Function) -> bool:
 
 def main() -> None:
     """Run them, and say why some fail."""
+    argparse.ArgumentParser(description=str(__doc__)).parse_args()
     with tempfile.TemporaryDirectory() as folder:
         name = "stable_baselines3"
         arguments = ("--quiet", "--no-deps", "--no-binary", name, "--dest", folder, f"{name}=={version(name)}")

@@ -133,15 +133,19 @@ def test_a_complete_result_stays_until_the_new_one_is(tmp_path: Path, monkeypatc
     assert not begun.exists()
 
 
-def test_how_long_it_takes_is_said_of_the_cases_that_are_left(
+def test_what_is_there_and_how_long_the_rest_takes_is_said(
     tmp_path: Path, monkeypatch: MonkeyPatch, capsys: CaptureFixture[str]
 ) -> None:
     known = dataclasses.replace(made(tmp_path, Squares()), minutes=30.0)
     record.write(known, tmp_path)
     monkeypatch.setattr(record.names, "__defaults__", (tmp_path,))
     monkeypatch.setattr(record.read, "__defaults__", (tmp_path,))
-    made(tmp_path / "other", Squares(), "--count", "1")
-    assert "that takes about 10 minutes with one worker" in capsys.readouterr().err
+    made(tmp_path / "other", Squares(fails_at=1))
+    said = capsys.readouterr().err
+    assert "that takes about 30 minutes with one worker" in said
+    assert f"complete cases are in {tmp_path / 'other' / 'squares.csv'}, and the same command goes on" in said
+    made(tmp_path / "other", Squares())
+    assert "goes on: 1 of 3 cases are there\nthat takes a minute or less" in capsys.readouterr().err
 
 
 def test_rows_of_before_keep_what_their_head_says(tmp_path: Path) -> None:
@@ -228,7 +232,7 @@ def test_only_the_full_experiment_of_committed_code_makes_it(tmp_path: Path, mon
     monkeypatch.setattr(record, "RESULTS", tmp_path / "results")
     monkeypatch.setattr("experiments.making.OTHER_RESULTS", tmp_path / "other")
     monkeypatch.setattr(record, "changed_files", lambda: ["sarah/files.py"])
-    with pytest.raises(SarahError, match=r"made of: sarah/files[.]py has changes"):
+    with pytest.raises(SarahError, match=r"made of, or put it elsewhere: sarah/files[.]py has changes"):
         make(squares(Squares()), "run squares", [])
     assert not list(tmp_path.iterdir())
     monkeypatch.setattr(record, "changed_files", list)

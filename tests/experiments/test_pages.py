@@ -270,7 +270,7 @@ def test_naf_is_above_by_its_interval_few_seeds_are_not_compared() -> None:
         "Walker2d-v5; a seed of NAF is above one of TD3 with a probability of 0."
     )
     assert "seeds: 4 of 5 so far)" in said
-    assert "Too few trainings are made so far to compare SAC. Too few" in said
+    assert "Too few trainings are made so far to compare SAC, DDPG. V comes" in said
 
 
 def test_a_table_says_how_many_seeds_there_are_so_far() -> None:
