@@ -34,15 +34,18 @@ def test_targets_stay_within_limits_whose_joints_are_named() -> None:
     given.clear()
     free = stepping(v)
     assert generator.limited_joints == ("left_hip_flexion", "left_leg_length")
-    named = set()
+    named, at_the_top = set[str](), set[str]()
     for _ in range(400):
         generator.tick(reading(lateral=3.0))
         free.tick(reading(lateral=3.0))
         named |= set(generator.limited_joints)
+        if generator.targets[4] == 0.02:
+            at_the_top |= set(generator.limited_joints)
         assert free.limited_joints == ()
         for target, (low, high) in zip(generator.targets, NARROW, strict=True):
             assert low <= target <= high
     assert named == {"left_hip_abduction", "right_hip_abduction", "left_hip_flexion", "left_leg_length"}
+    assert "left_leg_length" in at_the_top
     assert generator.targets[:2] == (-0.01, -0.01)  # one abduction for both
 
 
