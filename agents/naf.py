@@ -200,7 +200,6 @@ class NAF(OffPolicyAlgorithm):
             shape = (n_envs, *self.action_space.shape)
             std = self.exploration_schedule(self._current_progress_remaining)
             action_noise = NormalActionNoise(np.zeros(shape), np.full(shape, std))
-            self.logger.record("train/exploration_std", float(np.mean(std)))
         return super()._sample_action(learning_starts, action_noise, n_envs)
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
@@ -279,6 +278,9 @@ class NAF(OffPolicyAlgorithm):
                 "too large. VecCheckNan of stable-baselines3, with raise_exception=True, finds what is not a number"
             )
         self.logger.record("train/n_updates", self._n_updates, exclude="tensorboard")
+        if self.action_noise is None:
+            std = self.exploration_schedule(self._current_progress_remaining)
+            self.logger.record("train/exploration_std", float(np.mean(std)))
         self.logger.record("train/loss", mean_loss)
         if w_losses:
             self.logger.record("train/w_loss", th.stack(w_losses).mean().item())

@@ -20,7 +20,7 @@ ONE_STEP: dict[str, Any] = dict(
     exploration_std=LinearSchedule(0.3, 0.05, end_fraction=0.8),
     elite_share=0.8,
     elite_std=LinearSchedule(0.4, 0.15, end_fraction=0.8),
-    elite_draws=1,  # Of several the most promising one would explore too little
+    elite_draws=1,
     policy_kwargs=dict(net_arch=dict(V=[32, 32], mu=[32, 32], L=[32, 32]), activation_fn=nn.Tanh, min_curvature=1.0),
 )
 

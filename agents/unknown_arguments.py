@@ -22,9 +22,12 @@ WHY_NOT = {
     "exploration_fraction": GAUSSIAN,
     "exploration_initial_eps": GAUSSIAN,
     "exploration_final_eps": GAUSSIAN,
-    "use_sde": GAUSSIAN,
+    **dict.fromkeys(("use_sde", "sde_sample_freq", "use_sde_at_warmup"), GAUSSIAN),
+    "share_features_extractor": "V, W, mu and L share one, and the target network has its own",
     "target_update_interval": "the target network follows in every update, by tau",
     **dict.fromkeys(("net_arch", "activation_fn", "dropout", "squash_mu", "min_curvature"), OF_POLICY),
+    **dict.fromkeys(("features_extractor_class", "features_extractor_kwargs", "normalize_images"), OF_POLICY),
+    **dict.fromkeys(("optimizer_class", "optimizer_kwargs"), OF_POLICY),
 }
 """Reason why NAF has no such argument, by the name that it has elsewhere."""
 WHY_NOT |= dict.fromkeys(("elite_share", "elite_std", "elite_draws", "first_action_centre"), "only LocalNAF has it")

@@ -32,7 +32,7 @@ from experiments.tables import table
 from sarah.agents import NAF
 
 LAYERS = ((32, 32), (64, 64), (256, 256))
-DIMENSIONS = ((3, 1), (16, 5))
+DIMENSIONS = ((3, 1), (16, 5), (348, 17))
 """Observations and actions."""
 TRANSITIONS = 2000
 WARM_UP = 20

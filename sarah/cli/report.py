@@ -26,7 +26,8 @@ class ReportOptions:
     :param run: run folder of a finished training
     :param task: task of a run whose task is that of a file, such as my_task.py:JUMP
     :param out: file to write; by default report.html in the run folder
-    :param episodes: number of episodes on unseen seeds for the table of results
+    :param episodes: number of episodes on unseen seeds for the table of results; those of which the training itself has
+        noted the results are not simulated again
     :param seconds: simulated times at which the video begins and ends, in s. It is MP4 with the extra ``video``, and
         otherwise GIF
     :param workers: number of processes on this machine that simulate; with 0, this process does. It changes no result

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from statistics import mean, median, pstdev
 from typing import Any
 
@@ -128,6 +128,30 @@ class Evaluation:
             "diverged": self.diverged,
             **statistics,
         }
+
+
+@dataclass(frozen=True)
+class NotedEvaluation(Evaluation):
+    """Episodes of which a file has no more than the summary.
+
+    :param noted: summary of their evaluation, see :meth:`Evaluation.summary`
+    """
+
+    noted: Mapping[str, float] = field(kw_only=True)
+
+    def statistic(self, metric: str, name: str) -> float:
+        """Statistic of a metric, one of those that summaries have."""
+        return float(self.noted[f"{metric}_{name}"])
+
+    @property
+    def episodes(self) -> int:
+        """Number of episodes."""
+        return int(self.noted["episodes"])
+
+    @property
+    def survivors(self) -> int:
+        """Number of episodes that ran to their time limit."""
+        return round(self.noted["survival_rate"] * self.episodes)
 
 
 def evaluate(

@@ -61,7 +61,7 @@ def write_report(
     config, learned = run.config, learned_episode(run).spec
     settings, versions = run.folder.config_text(), run.folder.versions()  # before the long simulation
     task = config.task
-    of, shown = _evaluations(learned, episodes, executor)
+    of, shown = _evaluations(run, learned, episodes, executor)
     with tempfile.TemporaryDirectory() as name, only_png():
         folder = Path(name)
         drawn = {file.stem: file for file in draw_all_figures([run], folder, shown)}
@@ -97,17 +97,26 @@ def write_report(
 
 
 def _evaluations(
-    learned: EpisodeSpec, episodes: int, executor: Executor
+    run: RunRecord, learned: EpisodeSpec, episodes: int, executor: Executor
 ) -> tuple[dict[tuple[float, ...], Evaluation], EpisodeResult]:
-    """Evaluations of learned, baseline and neutral parameters, and the first of the learned ones' episodes, traced."""
+    """Evaluations of learned, baseline and neutral parameters, and the first of the learned ones' episodes, traced.
+
+    What the training has evaluated on as many episodes is not simulated again.
+    """
     task, least_clearance = learned.task, learned.config.least_clearance
-    values = list(dict.fromkeys([learned.parameters, task.baseline, task.neutral or task.baseline]))
-    specs = [replace(learned, parameters=one, seed=seed) for one in values for seed in range(episodes)]
+    noted = {learned.parameters: run.evaluation("evaluation", episodes)}
+    if task.neutral is not None:
+        noted.setdefault(task.neutral, run.evaluation("baseline", episodes))
+    of = {one: evaluation for one, evaluation in noted.items() if evaluation is not None}
+    values = [one for one in dict.fromkeys([learned.parameters, task.baseline, *noted]) if one not in of]
     shown = simulate(learned, record_trace=True)
-    others = tqdm(executor.simulate_all(specs[1:]), desc="simulating", unit=" episodes", total=len(specs), initial=1)
-    results = [shown, *others]
-    parts = [tuple(results[first : first + episodes]) for first in range(0, len(specs), episodes)]
-    return {one: Evaluation(part, least_clearance) for one, part in zip(values, parts, strict=True)}, shown
+    specs = [replace(learned, parameters=one, seed=seed) for one in values for seed in range(episodes)]
+    left = [spec for spec in specs if spec != learned]
+    others = tqdm(executor.simulate_all(left), desc="simulating", unit=" episodes", total=len(left), disable=not left)
+    results = [*[shown] * (len(specs) - len(left)), *others]  # the learned parameters come first, with seed 0
+    parts = (tuple(results[first : first + episodes]) for first in range(0, len(specs), episodes))
+    of |= {one: Evaluation(part, least_clearance) for one, part in zip(values, parts, strict=True)}
+    return of, shown
 
 
 def _captions(task: Task) -> dict[str, str]:

@@ -208,6 +208,13 @@ class RunFolder(Folder):
         task = (config or self.config()).task
         return read_parameters(self.result_path, task.box)
 
+    def result(self) -> dict[str, Any]:
+        """Read what the training ended with.
+
+        :raises RunFolderError: if the file is damaged
+        """
+        return read_result(self.result_path)
+
     def _rows(self, path: Path, config: TrainingConfig | None = None) -> Iterator[dict[str, str]]:
         """Read a table, which has at most a row for each episode of the training."""
         if not path.exists():
@@ -226,16 +233,35 @@ def read_parameters(path: Path, box: Box) -> Parameters:
     :raises RunFolderError: if the file does not contain exactly these parameters
     """
     try:
-        learned = json.loads(read_text(path))["parameters"]
+        learned = read_result(path)["parameters"]
         if set(learned) != set(box.names):
             found = shortened(", ".join(map(str, learned)))
             raise ValueError(f"it names {found} instead of {', '.join(box.names)}")
         return box.checked([learned[name] for name in box.names])
+    except (ValueError, KeyError, TypeError) as error:
+        raise _no_parameters(path, error) from error
+
+
+def read_result(path: Path) -> dict[str, Any]:
+    """Read a ``parameters.json``.
+
+    :param path: path of the file
+    :raises RunFolderError: if it cannot be read, or is no object of JSON
+    """
+    try:
+        content = json.loads(read_text(path))
+        if not isinstance(content, dict):
+            raise ValueError("it is no object")
+        return content
     except OSError as error:
         raise unreadable(path, error) from error
-    except (ValueError, KeyError, TypeError, RecursionError) as error:
-        again = "without the file, --resume makes it again"
-        raise RunFolderError(f"{path} does not hold learned parameters ({error}): {again}") from error
+    except (ValueError, RecursionError) as error:
+        raise _no_parameters(path, error) from error
+
+
+def _no_parameters(path: Path, error: Exception) -> RunFolderError:
+    again = "without the file, --resume makes it again"
+    return RunFolderError(f"{path} does not hold learned parameters ({error}): {again}")
 
 
 def _append_row(path: Path, fields: Sequence[str], row: Mapping[str, Any]) -> None:

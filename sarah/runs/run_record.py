@@ -7,8 +7,10 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 
+from sarah.episode.evaluation import Evaluation, NotedEvaluation
+from sarah.episode.result import METRICS
 from sarah.errors import RunFolderError
-from sarah.number import number
+from sarah.number import is_finite, number
 from sarah.recorded.folder import LONGEST_REASON
 from sarah.runs.config import TrainingConfig
 from sarah.runs.run_folder import RunFolder
@@ -44,6 +46,20 @@ class RunRecord:
     def recommendations(self) -> Rows:
         """Rows of ``recommendations.csv``, as text."""
         return tuple(self.folder.recommendations(self.config))
+
+    def evaluation(self, name: str, episodes: int) -> Evaluation | None:
+        """Evaluation with which the training ended, on the first seeds; none if its result has none like that.
+
+        :param name: ``evaluation``, that of the learned parameters, or ``baseline``, that of the neutral ones
+        :param episodes: number of episodes
+        """
+        noted = self.folder.result().get(name)
+        names = [f"{metric}_{statistic}" for metric in METRICS for statistic in METRICS[metric].statistics]
+        if not isinstance(noted, dict) or noted.get("episodes") != episodes:
+            return None
+        if not all(is_finite(noted.get(one)) for one in ("survival_rate", *names)):
+            return None
+        return NotedEvaluation((), self.config.episode.least_clearance, noted=noted)
 
     @contextmanager
     def naming_folder(self) -> Iterator[None]:

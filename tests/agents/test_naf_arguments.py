@@ -85,6 +85,8 @@ def test_bad_networks_deviations_and_actions(name, value, said):
 UNKNOWN: list[tuple[type[NAF], dict[str, Any], str, str]] = [
     (NAF, {"learning_rat": 1e-3}, "NAF", "learning_rat', did you mean 'learning_rate'[?]"),
     (NAF, {"net_arch": [8]}, "NAF", "net_arch': it goes into policy_kwargs"),
+    (NAF, {"optimizer_kwargs": {}}, "NAF", "optimizer_kwargs': it goes into policy_kwargs"),
+    (NAF, {"policy_kwargs": {"share_features_extractor": True}}, "NAFPolicy", "share_features_extractor': V, W, mu .*"),
     (NAF, {"xyz": 1}, "NAF", "xyz', allowed are learning_rate, buffer_size, .*, seed, device"),
     (NAF, {"policy": "MlpPolicy", "env": "Pendulum-v1", "tua": 1}, "NAF", "tua', did you mean 'tau'[?]"),
     (NAF, {"policy_delay": 2}, "NAF", "policy_delay': there is no actor to delay, as mu is part of Q"),

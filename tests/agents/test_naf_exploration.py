@@ -68,10 +68,12 @@ def test_they_can_differ_between_dimensions_and_in_time(std, parts):
         np.testing.assert_allclose(actions[begin:end].std(axis=(0, 1)), expected, rtol=0.15, atol=0.002)
 
 
-def test_a_schedule_stays_at_its_end_in_steps_beyond_those_asked_for():
-    model = NAF("MlpPolicy", "Pendulum-v1", exploration_std=lambda left: 0.3 * left, learning_starts=0, train_freq=8)
-    model.learn(60, log_interval=100)
-    assert model.num_timesteps == 64 and model.logger.name_to_value["train/exploration_std"] == 0.0
+@pytest.mark.parametrize("std", [lambda left: 0.3 * left, LinearSchedule(0.2, 0.0, end_fraction=0.8)])
+def test_a_schedule_keeps_its_end(std):
+    """In steps beyond those asked for, and where rounding goes below 0: the second is -3e-17 after 80 of 100 steps."""
+    model = NAF("MlpPolicy", "Pendulum-v1", exploration_std=std, learning_starts=0, train_freq=8, batch_size=8)
+    model.learn(100, log_interval=100)
+    assert model.num_timesteps == 104 and model.logger.name_to_value["train/exploration_std"] == 0.0
 
 
 def test_given_action_noise_takes_precedence_in_the_warm_up_too():

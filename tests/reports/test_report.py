@@ -18,6 +18,7 @@ from terminal import done
 
 from sarah import EpisodeConfig, EpisodeSpec, Physics
 from sarah.episode.episode import Episode
+from sarah.episode.evaluation import Evaluation
 from sarah.episode.tasks import STEPPING, TASKS
 from sarah.errors import ConfigurationError
 from sarah.reports import all_figures, report, training_figures
@@ -98,6 +99,25 @@ def test_a_run_is_read_once_and_no_episode_is_simulated_twice(task: str, counts:
         assert counts[learned, 0] == counts["episodes"] == counts["config"] == 1
         assert set(counts.values()) == {1}, counts
     assert ("about 0.4" in (tmp_path / "page.html").read_text()) == (task == "stepping")
+
+
+@pytest.mark.parametrize("task", TASKS)
+@pytest.mark.parametrize(("noted", "is_known"), [({}, True), ({"score_mean": None}, False), ({"episodes": 3}, False)])
+def test_what_a_training_has_evaluated_is_not_simulated_again(
+    task: str, noted: dict[str, Any], is_known: bool, counts: Counter[Any], tmp_path: Path
+) -> None:
+    config = TrainingConfig(task, episodes=1, episode=replace(TASKS[task].episode, time_limit=1.2, physics=PHYSICS))
+    run, learned = RunFolder.create(tmp_path / "run", config), (0.5,) * len(TASKS[task].parameters)
+    run.append_episode(0, EpisodeSpec(learned, 2**31, task, config.episode), RESULT)
+    summary = {**Evaluation((RESULT,) * 2).summary(), "score_median": 0.987, **noted}
+    named = dict(zip(TASKS[task].parameter_names, learned, strict=True))
+    run.write_parameters({"parameters": named, "evaluation": summary, "baseline": TASKS[task].neutral and summary})
+    done("sarah-report", "run", "--out", "page.html", "--episodes", "2", cwd=tmp_path)
+    assert ("<td>0.987</td>" in (tmp_path / "page.html").read_text()) == is_known
+    simulated = {key for key in counts if isinstance(key, tuple)}
+    of_baseline = {(TASKS[task].baseline, 0), (TASKS[task].baseline, 1)}
+    known = of_baseline if TASKS[task].neutral else set()
+    assert simulated == {(learned, 0), (learned, 1), *of_baseline} - ({(learned, 1), *known} if is_known else set())
 
 
 @pytest.mark.usefixtures("counts")
