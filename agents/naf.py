@@ -152,6 +152,7 @@ class NAF(OffPolicyAlgorithm):
         self.max_grad_norm = max_grad_norm
         self.exploration_std = exploration_std
         self.watch = Watch()
+        # Transitions before num_timesteps was last reset
         self.earlier_timesteps = 0
 
         if _init_setup_model:

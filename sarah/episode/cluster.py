@@ -243,7 +243,8 @@ def _interrupted_later() -> Iterator[None]:
     Processes that are started ignore Ctrl-C from their first moment.
     """
     is_main = threading.current_thread() is threading.main_thread()  # no other may have handlers
-    usual = {int(number): signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM) if is_main}
+    handlers = {int(number): signal.getsignal(number) for number in (signal.SIGINT, signal.SIGTERM) if is_main}
+    usual = {number: handler for number, handler in handlers.items() if handler is not None}  # others are not Python's
     came: list[int] = []
     ensure_running()  # otherwise it starts with the first worker, and lets Ctrl-C through again
     for number in usual:

@@ -140,8 +140,15 @@ class NotedEvaluation(Evaluation):
     noted: Mapping[str, float] = field(kw_only=True)
 
     def statistic(self, metric: str, name: str) -> float:
-        """Statistic of a metric, one of those that summaries have."""
+        """Statistic of a metric.
+
+        :raises KeyError: if summaries do not have it
+        """
         return float(self.noted[f"{metric}_{name}"])
+
+    def summary(self) -> dict[str, Any]:
+        """The summary."""
+        return dict(self.noted)
 
     @property
     def episodes(self) -> int:
@@ -151,7 +158,17 @@ class NotedEvaluation(Evaluation):
     @property
     def survivors(self) -> int:
         """Number of episodes that ran to their time limit."""
-        return round(self.noted["survival_rate"] * self.episodes)
+        return round(self.survival_rate * self.episodes)
+
+    @property
+    def survival_rate(self) -> float:
+        """Share of the episodes that ran to their time limit."""
+        return self.noted["survival_rate"]
+
+    @property
+    def diverged(self) -> int:
+        """Number of episodes that ended because the simulation diverged."""
+        return int(self.noted["diverged"])
 
 
 def evaluate(

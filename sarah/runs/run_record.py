@@ -57,7 +57,7 @@ class RunRecord:
         names = [f"{metric}_{statistic}" for metric in METRICS for statistic in METRICS[metric].statistics]
         if not isinstance(noted, dict) or noted.get("episodes") != episodes:
             return None
-        if not all(is_finite(noted.get(one)) for one in ("survival_rate", *names)):
+        if not all(is_finite(noted.get(one)) for one in ("survival_rate", "diverged", *names)):
             return None
         return NotedEvaluation((), self.config.episode.least_clearance, noted=noted)
 
