@@ -116,10 +116,14 @@ def test_an_interrupt_waits_until_workers_have_started(capfd: pytest.CaptureFixt
         for process in (*children, *psutil.Process().children(recursive=True), psutil.Process()):
             process.send_signal(signal.SIGINT)
 
-    with pytest.raises(KeyboardInterrupt):
-        threading.Thread(target=interrupt_all).start()
-        with Workers(1):
-            pytest.fail("the interrupt did not come")
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # it may have been switched off for all tests
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            threading.Thread(target=interrupt_all).start()
+            with Workers(1):
+                pytest.fail("the interrupt did not come")
+    finally:
+        signal.signal(signal.SIGINT, before)
     assert capfd.readouterr().err == ""
 
 
