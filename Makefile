@@ -21,13 +21,14 @@ help:  ## show what can be made
 
 install: $(VENV)/installed  ## create the environment in .venv, with the tested versions; with PYTHON=python3.13, in .venv-python3.13
 
+# To compile all modules, of which most are never imported, would take half of the time.
 $(VENV)/installed: EXTRAS := dev
 $(VENV)/ready: EXTRAS := mujoco,video
 $(VENV)/installed $(VENV)/ready: setup.cfg pyproject.toml constraints.txt
 	@$(PYTHON) -c 'import sys; (3, 10) <= sys.version_info[:2] <= (3, 13) or sys.exit("sarah is tested with Python 3.10 to 3.13: make PYTHON=python3.11")'
 	$(PYTHON) -m venv $(VENV)
 	$(BIN)/pip install --quiet --upgrade pip -c constraints.txt
-	$(BIN)/pip install --quiet -c constraints.txt --editable '.[$(EXTRAS)]'
+	$(BIN)/pip install --quiet --no-compile -c constraints.txt --editable '.[$(EXTRAS)]'
 	@touch $@
 
 train: RUN := $(RUN)
