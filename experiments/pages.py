@@ -122,14 +122,15 @@ def pages() -> list[Path]:
     return sorted(file for file in files if "[[[cog" in file.read_text(encoding="utf-8"))
 
 
-def write(*options: str) -> int:
+def write(check: bool = False) -> int:
     """Rewrite the generated parts of all pages.
 
-    :param options: options of cog; ``--check`` changes nothing and says what would change
-    :return: 0, or cog's number of a mistake
+    :param check: whether to change nothing, and only say what would change
+    :return: 0; otherwise cog's number of a mistake, or of something that would change
     """
-    # -P: a function prints its part
-    return int(Cog().main(["cog", "-r", "-P", "-p", PROLOGUE, *options, *map(str, pages())]))
+    # -P: a function prints its part; beside -r cog's --check would check nothing
+    options = ("--check" if check else "-r", "-P", "-p", PROLOGUE)
+    return int(Cog().main(["cog", *options, *map(str, pages())]))
 
 
 if __name__ == "__main__":

@@ -208,13 +208,6 @@ class RunFolder(Folder):
         task = (config or self.config()).task
         return read_parameters(self.result_path, task.box)
 
-    def result(self) -> dict[str, Any]:
-        """Read what the training ended with.
-
-        :raises RunFolderError: if the file is damaged
-        """
-        return read_result(self.result_path)
-
     def _rows(self, path: Path, config: TrainingConfig | None = None) -> Iterator[dict[str, str]]:
         """Read a table, which has at most a row for each episode of the training."""
         if not path.exists():

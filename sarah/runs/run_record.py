@@ -13,7 +13,7 @@ from sarah.errors import RunFolderError
 from sarah.number import is_finite, number
 from sarah.recorded.folder import LONGEST_REASON
 from sarah.runs.config import TrainingConfig
-from sarah.runs.run_folder import RunFolder
+from sarah.runs.run_folder import RunFolder, read_result
 
 Rows = tuple[dict[str, str], ...]
 
@@ -53,7 +53,7 @@ class RunRecord:
         :param name: ``evaluation``, that of the learned parameters, or ``baseline``, that of the neutral ones
         :param episodes: number of episodes
         """
-        noted = self.folder.result().get(name)
+        noted = read_result(self.folder.result_path).get(name)
         names = [f"{metric}_{statistic}" for metric in METRICS for statistic in METRICS[metric].statistics]
         if not isinstance(noted, dict) or noted.get("episodes") != episodes:
             return None

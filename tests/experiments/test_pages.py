@@ -54,8 +54,16 @@ def test_a_page_reads_in_any_reader(page: Path) -> None:
 
 def test_pages_hold_what_their_functions_write(capsys: pytest.CaptureFixture[str]) -> None:
     need("pybullet")  # without it the settings have another default engine
-    code = write("--check")
+    code = write(check=True)
     assert code == 0, f"run make results: {capsys.readouterr().out}"
+
+
+def test_a_figure_that_is_not_that_of_the_result_is_noticed(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    page, text = tmp_path / "page.md", '<!-- [[[cog show("landscape.answer") ]]] -->\n\nOld.\n\n<!-- [[[end]]] -->\n'
+    page.write_text(text, encoding="utf-8")
+    monkeypatch.setattr("experiments.pages.pages", lambda: [page])
+    assert write(check=True) != 0 and page.read_text(encoding="utf-8") == text
+    assert write() == 0 and write(check=True) == 0 and "The score depends" in page.read_text(encoding="utf-8")
 
 
 def test_every_result_is_shown_on_a_page() -> None:
