@@ -14,7 +14,7 @@ TIMINGS := throughput episodes updates decisions viewer
 PAGE := tests/viewer/test_page.py
 ENDURANCE := kills killed_workers killed_logs resume long_run protections pushes
 
-.PHONY: help install train figures stepping-report balance-report test test-page test-slow lint format docs results bench endurance mutants clean
+.PHONY: help install train second-training robustness figures stepping-report balance-report test test-page test-slow lint format docs results bench endurance mutants clean
 
 help:  ## show what can be made
 	@grep -E '^[a-z-]+:.*##' $(MAKEFILE_LIST) | sed -E 's/^([a-z-]+):.*## /\1\t/' | expand -t 12
@@ -35,19 +35,25 @@ train: RUN := $(RUN)
 train: $(or $(wildcard $(VENV)/installed),$(VENV)/ready)  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
 	$(BIN)/sarah-train --task stepping $(EPISODES:%=--episodes %) --seed $(SEED) \
 		--workers $(WORKERS) --out $(RUN)/stepping
-	$(BIN)/sarah-train --task balance --from $(RUN)/stepping $(BALANCE_EPISODES:%=--episodes %) --seed $(SEED) \
-		--workers $(WORKERS) --out $(RUN)/balance
-	@echo "figures and two reports, beside each other: about half a minute"
-	@$(MAKE) --no-print-directory --jobs=2 --output-sync=target figures stepping-report balance-report RUN=$(RUN)
-	$(BIN)/sarah-eval $(RUN)/balance --robustness --out $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
+	@echo "the second training, and beside it the report of the first"
+	@$(MAKE) --no-print-directory --jobs=2 second-training stepping-report RUN=$(RUN)
+	@echo "robustness, and beside it figures and the report of the second training"
+	@$(MAKE) --no-print-directory --jobs=3 robustness figures balance-report RUN=$(RUN)
 	@echo "all of it is in $(RUN): open $(RUN)/balance/report.html"
 
-# Each in one process, beside each other; two progress bars would overwrite one another, so each output comes whole.
+second-training:
+	$(BIN)/sarah-train --task balance --from $(RUN)/stepping $(BALANCE_EPISODES:%=--episodes %) --seed $(SEED) \
+		--workers $(WORKERS) --out $(RUN)/balance
+
+robustness:
+	$(BIN)/sarah-eval $(RUN)/balance --robustness --out $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
+
+# What runs beside something else says only what goes wrong: two progress bars would overwrite one another.
 figures:
-	$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures
+	@$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures > /dev/null
 
 stepping-report balance-report:
-	$(BIN)/sarah-report $(RUN)/$(@:-report=)
+	@TQDM_DISABLE=1 $(BIN)/sarah-report $(RUN)/$(@:-report=) > /dev/null
 
 # One thread for each process: two of them share the machine, and threads that wait for each other cost more than they do.
 test: install  ## the tests, except those of the viewer's page

@@ -112,7 +112,7 @@ def _evaluations(
     shown = simulate(learned, record_trace=True)
     specs = [replace(learned, parameters=one, seed=seed) for one in values for seed in range(episodes)]
     left = [spec for spec in specs if spec != learned]
-    others = tqdm(executor.simulate_all(left), desc="simulating", unit=" episodes", total=len(left), disable=not left)
+    others = tqdm(executor.simulate_all(left), desc="simulating", unit=" episodes", total=len(left)) if left else ()
     results = [*[shown] * (len(specs) - len(left)), *others]  # the learned parameters come first, with seed 0
     parts = (tuple(results[first : first + episodes]) for first in range(0, len(specs), episodes))
     of |= {one: Evaluation(part, least_clearance) for one, part in zip(values, parts, strict=True)}
