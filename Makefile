@@ -48,12 +48,14 @@ second-training:
 robustness:
 	$(BIN)/sarah-eval $(RUN)/balance --robustness --out $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
 
-# What runs beside something else says only what goes wrong: two progress bars would overwrite one another.
+# What runs beside something else says only what goes wrong, so that its words do not stand between the other's.
+quietly = @said=$$(TQDM_DISABLE=1 $(1) 2>&1) || { echo "$$said"; exit 1; }
+
 figures:
-	@$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures > /dev/null
+	$(call quietly,$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures)
 
 stepping-report balance-report:
-	@TQDM_DISABLE=1 $(BIN)/sarah-report $(RUN)/$(@:-report=) > /dev/null
+	$(call quietly,$(BIN)/sarah-report $(RUN)/$(@:-report=))
 
 # One thread for each process: two of them share the machine, and threads that wait for each other cost more than they do.
 test: install  ## the tests, except those of the viewer's page
