@@ -17,6 +17,9 @@ COARSE = ("--episode.physics.rate", "100", "--episode.physics.solver-iterations"
 SHORT = ("--episode.time-limit", "1.5", *COARSE, "--slots", "1")
 """Options of a training whose episodes are as short as can be."""
 
+WITHOUT_PYBULLET = "PyBullet is not installed, so MuJoCo simulates\n"
+"""Line of commands that simulate where that is so; :func:`run` leaves it out."""
+
 Answer = Callable[[str], str]
 """Function that runs a command line which is refused, and returns its message."""
 Begin = Callable[[str], TrainingConfig]
@@ -34,7 +37,8 @@ def run(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess
             code = 0
         except SystemExit as ended:
             code = int(ended.code or 0)
-    return subprocess.CompletedProcess(words, code, out.getvalue(), err.getvalue())
+    said = err.getvalue().replace(WITHOUT_PYBULLET, "")
+    return subprocess.CompletedProcess(words, code, out.getvalue(), said)
 
 
 def done(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess[str]:

@@ -38,7 +38,8 @@ def place_of(link: str, joints: Mapping[str, Element]) -> np.ndarray:
     """
     place = np.zeros(3)
     joint_of = {child.get("link", ""): joint for joint in joints.values() for child in joint.findall("child")}
-    while joint := joint_of.get(link):  # from the link inwards, as yourdfpy adds: the last bit depends on the order
+    # From the link inwards, as yourdfpy adds: the last bit depends on the order.
+    while (joint := joint_of.get(link)) is not None:
         place = numbers_of(joint, "origin", "xyz", "0 0 0") + place
         link = joint.findall("parent")[0].get("link", "")
     return place

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 from hand_made import rocking
+from laboratory import NEEDS_PYBULLET
 from logged import NAMED, TARGETS, write
 from terminal import COARSE, done, run
 
@@ -108,6 +109,7 @@ def test_an_operation_logs_its_session(tmp_path: Path) -> None:
     assert "a.mcap is there already" in again.stderr and not (tmp_path / "other").exists()
 
 
+@NEEDS_PYBULLET
 def test_a_log_is_filmed_as_it_was(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     filmed: list[tuple[object, ...]] = []
     monkeypatch.setattr("sarah.pictures.video.frames", lambda *arguments: filmed.append(arguments))

@@ -216,6 +216,7 @@ def test_mistakes_get_one_line_and_leave_everything_alone(
     (tmp_path / "full" / "precious.txt").write_text("data")
     (tmp_path / "my_task.py").write_text(OWN)
     if " mine" in line:
+        need("pybullet")
         config = TrainingConfig(algo="random", episode=EpisodeConfig(engine="pybullet"))
         RunFolder.create(tmp_path / "mine", config)
     if line.startswith("sarah-log"):
