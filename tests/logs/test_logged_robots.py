@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hand_made import DT, heard
-from laboratory import COARSE_PHYSICS, turned
+from laboratory import COARSE_PHYSICS, NEEDS_PYBULLET, turned
 from listening import Rocking, steps
 from logged import TARGETS, tick, write
 from operated import quick
@@ -108,6 +108,7 @@ def test_a_full_disk_is_said_after_the_episode(tmp_path: Path, monkeypatch: pyte
         log_episode(SPEC, tmp_path / "a.mcap", "test")
 
 
+@NEEDS_PYBULLET
 def test_a_logged_robot_is_seen_as_it_moved(tmp_path: Path) -> None:
     config = BALANCE.config_of(BALANCE.episode, time_limit=6.0, dimensions={"torso_mass": 12.0})
     spec = EpisodeSpec(SHIPPED[5:], 3, BALANCE, config)

@@ -6,6 +6,7 @@ from itertools import pairwise
 from typing import Any
 
 import pytest
+from laboratory import NEEDS_PYBULLET
 from operated import quick
 
 from sarah import BalanceConfig, Push, PushedConfig
@@ -70,6 +71,7 @@ def test_only_what_comes_after_settling_is_measured() -> None:
     assert (felt["a_x_mean"], felt["length_lag"]) == (2.0, 0.1)
 
 
+@NEEDS_PYBULLET
 def test_a_window_that_steps_is_worth_more_than_one_that_stands() -> None:
     stepping, standing = (run_all(OperationConfig(minutes=0.2), parameters=chosen)[-1] for chosen in (SHIPPED, STANDS))
     for reward in ("score", "observed_reward"):
@@ -91,6 +93,7 @@ def test_a_fall_costs_time_and_the_next_window_begins_standing() -> None:
     assert (after.seconds, next_but_one.seconds) == (2.0, 1.0)  # it stands for one, and runs for one
 
 
+@NEEDS_PYBULLET
 def test_after_a_fall_the_robot_is_the_same_with_other_noise() -> None:
     robot = RobotInOperation(quick(minutes=1.0, robot={**KICKED, "payload": 3.0}), 0)
     first = robot.run(SHIPPED)
@@ -163,6 +166,7 @@ def test_parameters_out_of_their_box_are_refused() -> None:
             robot.run(parameters)  # type: ignore[arg-type]
 
 
+@NEEDS_PYBULLET
 def test_a_supervised_robot_that_stopped_steps_in_another_window() -> None:
     robot = RobotInOperation(quick(robot={"supervisor": {"enabled": True, "stepless_seconds": 0.8}}), 0)
     never, rate = (2.0,) * 5 + (0.0,) * 4, FELT.index("steps_per_second")

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from laboratory import NEEDS_PYBULLET
 
 from sarah.episode.from_mapping import from_mapping
 from sarah.errors import ConfigurationError, SarahError
@@ -204,6 +205,7 @@ def test_the_windows_of_an_mcap_file_are_a_log(tmp_path: Path) -> None:
     assert (robot.name, robot.kind, robot.conditions) == (same.name, same.kind, same.conditions)
 
 
+@NEEDS_PYBULLET
 def test_kinds_with_many_differing_settings_stay_apart(tmp_path: Path) -> None:
     shared = {"engine": "mujoco", "randomisation": {"actuator_bandwidth": 12.0, "delay_seconds": 0.03, "friction": 0.5}}
     configs = [from_mapping(OperationConfig(), {"robot": {**shared, "payload": load}}) for load in (5.0, 8.0)]
