@@ -47,7 +47,7 @@ def floor(width: int, height: int, camera: Camera) -> np.ndarray:
         length = view.position[2] / np.maximum(-ray_z, 1e-6)  # length of the ray down to the floor
         colours = _colours(length * ray_x + view.position[0], length * ray_y + view.position[1], view, camera)
         even = Image.fromarray(colours.astype(np.uint8))
-        picture[top : top + rows] = even.resize((width, rows), Image.Resampling.BOX)
+        picture[top : top + rows] = np.asarray(even.resize((width, rows), Image.Resampling.BOX))
     if camera.ground.is_rough:
         nodes, triangles = mesh(camera.ground)
         x, y, _ = nodes[triangles].mean(axis=1).T

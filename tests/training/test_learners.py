@@ -1,6 +1,7 @@
 """Agents are built from their settings, every setting reaches them, and they go on in plain stable-baselines3."""
 
 import copy
+import warnings
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -11,6 +12,7 @@ import pytest
 import torch
 from interrupted import EPISODE, trained
 from stable_baselines3 import DDPG, SAC, TD3
+from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
 from stable_baselines3.common.utils import get_device
 from stable_baselines3.common.vec_env import DummyVecEnv
@@ -54,6 +56,20 @@ def end_of(schedule: Callable[[float], float]) -> float:
 def noise_std(model: OffPolicyAlgorithm) -> float:
     assert model.action_noise is not None
     return round(float(np.std([model.action_noise() for _ in range(5000)])), 1)
+
+
+def test_nobody_is_told_to_change_the_rewards_of_the_packages_tasks() -> None:
+    model = built(learning_starts=8)
+    model.set_logger(Logger(None, []))
+    shape, space = (1, *model.observation_space.shape), model.action_space
+    for reward in range(8):
+        observation = np.zeros(shape, dtype=np.float32)
+        model.replay_buffer.add(
+            observation, observation, space.sample()[None], np.array([60.0 + reward]), np.array([True]), [{}]
+        )
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        model.train(1)
 
 
 COMMON: dict[str, tuple[Any, Callable[[Any], Any]]] = {
