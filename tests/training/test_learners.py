@@ -67,9 +67,9 @@ def test_nobody_is_told_to_change_the_rewards_of_the_packages_tasks() -> None:
         model.replay_buffer.add(
             observation, observation, space.sample()[None], np.array([60.0 + reward]), np.array([True]), [{}]
         )
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
+    with warnings.catch_warnings(record=True) as said:
         model.train(1)
+    assert not said
 
 
 COMMON: dict[str, tuple[Any, Callable[[Any], Any]]] = {
