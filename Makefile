@@ -49,7 +49,7 @@ robustness:
 	$(BIN)/sarah-eval $(RUN)/balance --robustness --out $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
 
 # What runs beside something else says only what goes wrong, so that its words do not stand between the other's.
-quietly = @said=$$(TQDM_DISABLE=1 $(1) 2>&1) || { echo "$$said"; exit 1; }
+quietly = @said=$$(TQDM_DISABLE=1 $(1) 2>&1) || { printf '%s\n' "$$said" >&2; exit 1; }
 
 figures:
 	$(call quietly,$(BIN)/sarah-figures $(RUN)/stepping $(RUN)/balance --out $(RUN)/figures)

@@ -10,6 +10,7 @@ from importlib import import_module
 from pathlib import Path
 
 from sarah.runs.config import TrainingConfig
+from sarah.simulation.engines import is_installed
 
 BIN = Path(sys.executable).parent
 COARSE = ("--episode.physics.rate", "100", "--episode.physics.solver-iterations", "5")
@@ -37,7 +38,7 @@ def run(command: str, *arguments: str, cwd: Path) -> subprocess.CompletedProcess
             code = 0
         except SystemExit as ended:
             code = int(ended.code or 0)
-    said = err.getvalue().replace(WITHOUT_PYBULLET, "")
+    said = err.getvalue().replace(WITHOUT_PYBULLET, "", 0 if is_installed("pybullet") else 1)
     return subprocess.CompletedProcess(words, code, out.getvalue(), said)
 
 

@@ -24,8 +24,8 @@ SHADOW_BLUR = 0.004
 """Blur of the shadows, as a share of the picture's height."""
 SAMPLES = 2
 """Samples of the floor and of its shadows along each side of a pixel."""
-BAND = 16
-"""Number of rows of pixels of the floor that are drawn at a time."""
+BAND = 32
+"""Number of rows of samples of the floor that are drawn at a time."""
 
 
 @lru_cache(maxsize=4)
@@ -39,15 +39,14 @@ def floor(width: int, height: int, camera: Camera) -> np.ndarray:
     """
     view = View(width, height, camera)
     right = ((np.arange(SAMPLES * width) + 0.5) / SAMPLES - width / 2) / view.focal_length
-    picture = np.empty((height, width, 3), dtype=np.uint8)
-    for top in range(0, height, BAND):  # bands stay in the processor's cache
-        rows = min(BAND, height - top)
-        up = (height / 2 - top - (np.arange(SAMPLES * rows) + 0.5) / SAMPLES)[:, None] / view.focal_length
-        ray_x, ray_y, ray_z = (right * view.axes[0, i] + up * view.axes[1, i] + view.axes[2, i] for i in range(3))
+    up = (height / 2 - (np.arange(SAMPLES * height) + 0.5) / SAMPLES)[:, None] / view.focal_length
+    colours = np.empty((SAMPLES * height, SAMPLES * width, 3), dtype=np.uint8)
+    for top in range(0, len(up), BAND):  # bands stay in the processor's cache
+        band = slice(top, top + BAND)
+        ray_x, ray_y, ray_z = (right * view.axes[0, i] + up[band] * view.axes[1, i] + view.axes[2, i] for i in range(3))
         length = view.position[2] / np.maximum(-ray_z, 1e-6)  # length of the ray down to the floor
-        colours = _colours(length * ray_x + view.position[0], length * ray_y + view.position[1], view, camera)
-        even = Image.fromarray(colours.astype(np.uint8))
-        picture[top : top + rows] = np.asarray(even.resize((width, rows), Image.Resampling.BOX))
+        colours[band] = _colours(length * ray_x + view.position[0], length * ray_y + view.position[1], view, camera)
+    picture = np.asarray(Image.fromarray(colours).resize((width, height), Image.Resampling.BOX))
     if camera.ground.is_rough:
         nodes, triangles = mesh(camera.ground)
         x, y, _ = nodes[triangles].mean(axis=1).T
