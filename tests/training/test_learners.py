@@ -58,20 +58,6 @@ def noise_std(model: OffPolicyAlgorithm) -> float:
     return round(float(np.std([model.action_noise() for _ in range(5000)])), 1)
 
 
-def test_nobody_is_told_to_change_the_rewards_of_the_packages_tasks() -> None:
-    model = built(learning_starts=8)
-    model.set_logger(Logger(None, []))
-    shape, space = (1, *model.observation_space.shape), model.action_space
-    for reward in range(8):
-        observation = np.zeros(shape, dtype=np.float32)
-        model.replay_buffer.add(
-            observation, observation, space.sample()[None], np.array([60.0 + reward]), np.array([True]), [{}]
-        )
-    with warnings.catch_warnings(record=True) as said:
-        model.train(1)
-    assert not said
-
-
 COMMON: dict[str, tuple[Any, Callable[[Any], Any]]] = {
     "learning_rate": (3e-4, lambda model: model.policy.optimizer.param_groups[0]["lr"]),
     "buffer_size": (77, lambda model: model.buffer_size),
@@ -251,3 +237,17 @@ def test_what_goes_on_is_what_was_done(models: dict[str, Path]) -> None:
     buffer: Any = TD3.load(models["td3"], env=env).learn(5).replay_buffer
     np.testing.assert_allclose(buffer.actions[:5, 0], actions, atol=1e-6)
     np.testing.assert_allclose(buffer.rewards[:5, 0], rewards, rtol=1e-6)
+
+
+def test_nobody_is_told_to_change_the_rewards_of_the_packages_tasks() -> None:
+    model = built(learning_starts=8)
+    model.set_logger(Logger(None, []))
+    shape, space = (1, *model.observation_space.shape), model.action_space
+    for reward in range(8):
+        observation = np.zeros(shape, dtype=np.float32)
+        model.replay_buffer.add(
+            observation, observation, space.sample()[None], np.array([60.0 + reward]), np.array([True]), [{}]
+        )
+    with warnings.catch_warnings(record=True) as said:
+        model.train(1)
+    assert not said
