@@ -9,18 +9,19 @@ from stable_baselines3.common.type_aliases import GymEnv, Schedule
 
 from sarah.agents.arguments import Deviations, checked_number, checked_schedule
 from sarah.agents.buffers import RankReplayBuffer
+from sarah.agents.even_warm_up import EvenWarmUp
 from sarah.agents.naf import NAF
 from sarah.agents.policies import NAFPolicy
 from sarah.agents.unknown_arguments import explains_unknown
 
 
-class LocalNAF(NAF):
+class LocalNAF(EvenWarmUp, NAF):
     """
     NAF for tasks of one step and a few hundred of them to spend
 
     A parabola cannot fit a landscape with cliffs and decoys, and then ``mu`` is wrong. So good transitions are replayed
     more often than bad ones, and part of the exploring actions are drawn around the best known action, not around
-    ``mu``. ``PRESETS["one-step"]`` holds the other arguments that suit such tasks.
+    ``mu``. The actions of the warm-up are spread evenly over the action space. ``PRESETS["one-step"]`` holds the other arguments that suit such tasks.
 
     :param policy: The policy model to use (MlpPolicy, CnnPolicy, ...)
     :param env: The environment to learn from (if registered in Gym, can be str)
@@ -34,8 +35,8 @@ class LocalNAF(NAF):
     :param elite_draws: Number of draws for each such action. The one that the replay buffer expects most of is done, so
         that wide draws follow what is known
     :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
-        a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and not only after
-        ``learning_starts`` uniform ones
+        a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and the others of the
+        warm-up are uniform
     :param _init_setup_model: Whether or not to build the network at the creation of the instance
 
     The other arguments are those of :class:`~sarah.agents.naf.NAF`.
@@ -139,9 +140,6 @@ class LocalNAF(NAF):
         elite_share = self.elite_share_schedule(self._current_progress_remaining)
         if elite_share > 0 and self._knows_a_best_action(learning_starts):
             self._draw_near_best(scaled_action, elite_share)
-            action = self.policy.unscale_action(scaled_action)
-        if self.first_action_centre and self.num_timesteps == 0:
-            scaled_action[0] = 0.0  # Of the first environment: the others warm up as ever
             action = self.policy.unscale_action(scaled_action)
         return action, scaled_action
 

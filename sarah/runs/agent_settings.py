@@ -74,7 +74,7 @@ class LearnerSettings(AgentSettings):
 
     :param learning_rate: step size of the optimiser Adam
     :param buffer_size: number of episodes that the replay buffer holds
-    :param learning_starts: number of uniform episodes before the networks learn; twice the slots, if that is more
+    :param learning_starts: number of random episodes before the networks learn; twice the slots, if that is more
     :param batch_size: number of episodes in the minibatch of an update
     :param tau: share of the new weights that the target networks take over at an update
     :param gamma: discount factor; without effect, because an episode is one action

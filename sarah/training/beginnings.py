@@ -1,8 +1,7 @@
 """stable-baselines3's algorithms, which begin as NAF does, so that only what they learn is compared.
 
-Their warm-up is uniform: stable-baselines3 adds the action noise to it, so that many actions lie on a bound. On tasks
-with neutral parameters the first action is the centre of the action space. A saved model is that of the plain
-algorithm, and loads as such.
+Their warm-up has no noise: stable-baselines3 adds the action noise to it, so that many actions lie on a bound. A saved
+model is that of the plain algorithm, and loads as such.
 """
 
 from __future__ import annotations
@@ -12,10 +11,11 @@ from typing import Any
 import numpy as np
 from stable_baselines3 import DDPG, SAC, TD3
 from stable_baselines3.common.noise import ActionNoise
-from stable_baselines3.common.off_policy_algorithm import OffPolicyAlgorithm
+
+from sarah.agents.even_warm_up import EvenWarmUp
 
 
-class _Beginning(OffPolicyAlgorithm):
+class _Beginning(EvenWarmUp):
     """Begins as NAF does.
 
     :param arguments: arguments of the algorithm
@@ -31,11 +31,7 @@ class _Beginning(OffPolicyAlgorithm):
         self, learning_starts: int, action_noise: ActionNoise | None = None, n_envs: int = 1
     ) -> tuple[np.ndarray, np.ndarray]:
         noise = None if self.num_timesteps < learning_starts else action_noise
-        action, scaled_action = super()._sample_action(learning_starts, noise, n_envs)
-        if self.first_action_centre and self.num_timesteps == 0:
-            scaled_action[0] = 0.0
-            action = self.policy.unscale_action(scaled_action)
-        return action, scaled_action
+        return super()._sample_action(learning_starts, noise, n_envs)
 
 
 class BeginningTD3(_Beginning, TD3):

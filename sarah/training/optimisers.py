@@ -125,6 +125,8 @@ class OptunaSearch:
     def __init__(self, sampler: str, settings: AgentSettings, box: Box, seed: int, start: Start) -> None:
         import optuna
 
+        from sarah.agents.even_warm_up import latin_hypercube
+
         # The tries in flight when the warm-up ends have no merit yet, and are not waited for.
         made = getattr(optuna.samplers, sampler)(seed=seed, n_startup_trials=start.warm_up - start.slots + 1)
         verbosity = optuna.logging.get_verbosity()
@@ -138,7 +140,8 @@ class OptunaSearch:
             name: optuna.distributions.FloatDistribution(-1.0, 1.0) for name in map(str, range(len(box.parameters)))
         }
         first = [] if start.first is None else [box.scaled(start.first)]
-        drawn = np.random.default_rng(seed).uniform(-1.0, 1.0, (start.warm_up - len(first), len(box.parameters)))
+        generator, count, dim = np.random.default_rng(seed), start.warm_up - len(first), len(box.parameters)
+        drawn = generator.uniform(-1.0, 1.0, (count, dim)) if first else latin_hypercube(count, dim, generator)
         for action in (*first, *drawn.tolist()):
             self._study.enqueue_trial(dict(zip(self._ranges, action, strict=True)))
         self._asked: deque[Any] = deque()

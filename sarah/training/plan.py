@@ -90,7 +90,8 @@ class Plan:
     :param seeds: seeds of its random streams
     :param stages: parts of the training, of which each but the first is an extension
     :param start: how the algorithm begins: with the neutral parameters if they are the centre of the box, because few
-        uniform draws come near V = 0, and with a warm-up of random parameters
+        random draws come near V = 0, and with a warm-up of random parameters; without neutral ones it is a Latin
+        hypercube
     """
 
     config: TrainingConfig

@@ -1,5 +1,8 @@
 """Exploration: the warm-up, then noise around mu and draws around the best action, by their schedules."""
 
+import math
+from functools import partial
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -93,6 +96,19 @@ def test_its_own_noise_moves_no_warm_up_action(algorithm):
     np.testing.assert_allclose(warm_up.mean(axis=0), 0.0, atol=0.06)
     np.testing.assert_allclose(warm_up.std(axis=0), 1 / np.sqrt(3), rtol=0.05)
     assert len(np.unique(actions[1000:], axis=0)) > 40  # noise again
+
+
+@pytest.mark.parametrize(("n_envs", "learning_starts"), [(1, 5), (4, 10)])
+def test_the_warm_up_of_local_naf_is_spread_evenly(n_envs: int, learning_starts: int):
+    """Few uniform draws may all miss the part of a dimension where something works."""
+    steps = math.ceil(learning_starts / n_envs)
+    noise = NormalActionNoise(np.full(2, 9.0), np.zeros(2))
+    explored = partial(explore, n_envs=n_envs, algorithm=LocalNAF, learning_starts=learning_starts)
+    warm_up = explored(steps + 1)[:steps].reshape(-1, 2)
+    slices = np.sort(np.floor((warm_up + 1) / 2 * len(warm_up)), axis=0)
+    np.testing.assert_array_equal(slices, np.arange(len(warm_up))[:, None].repeat(2, axis=1))
+    assert (explored(steps, seed=1).reshape(-1, 2) != warm_up).all()
+    np.testing.assert_allclose(explored(steps, action_noise=noise), 1.0, atol=1e-6)  # that is given, it counts
 
 
 class Target(Recorder):

@@ -1,4 +1,4 @@
-"""Every algorithm begins alike: at the neutral parameters, then with uniform draws, on episodes of its own stream."""
+"""Every algorithm begins alike: at the neutral parameters or evenly spread, on episodes of its own stream."""
 
 import csv
 import dataclasses
@@ -12,6 +12,7 @@ from interrupted import EPISODE
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from sarah.agents.corrections import corrected
+from sarah.agents.even_warm_up import latin_hypercube
 from sarah.control.parameters import Parameters
 from sarah.envs.sarah_env import draw_seed
 from sarah.episode.episode import simulate
@@ -24,7 +25,7 @@ from sarah.runs.agent_settings import NAFSettings, TD3Settings, settings_of
 from sarah.runs.config import AGENTS, ALGORITHMS, TrainingConfig
 from sarah.runs.run_folder import RunFolder
 from sarah.training.optimisers import OPTIMISERS, RandomSearch
-from sarah.training.plan import Stage, plan_of, seeds_of
+from sarah.training.plan import WITHOUT_WARM_UP, Stage, plan_of, seeds_of
 from sarah.training.train import simulated_episodes, train
 
 
@@ -56,6 +57,16 @@ def test_the_first_episode_of_every_algorithm_is_neutral(algo: str, tmp_path: Pa
     assert not actions[0].any() and actions[1].any()
     generator = np.random.default_rng(seeds_of(config.seed).episodes)
     assert [int(row["seed"]) for row in run.episodes()] == [draw_seed(generator) for _ in range(3)]
+
+
+@pytest.mark.parametrize("algo", sorted(set(ALGORITHMS) - set(WITHOUT_WARM_UP)))
+def test_the_warm_up_without_neutral_parameters_is_spread_evenly(algo: str, tmp_path: Path) -> None:
+    """The score is near 0 where P1 is above 1. In one training of twenty, five uniform draws are all there."""
+    config = TrainingConfig(algo=algo, episodes=6, slots=1, seed=114, episode=EPISODE)
+    warm_up = trained(tmp_path / "run", config)[1][:5]
+    assert np.sort(np.floor(2.5 * (warm_up + 1)), axis=0).T.tolist() == [[0, 1, 2, 3, 4]] * 5
+    alike = latin_hypercube(5, 5, np.random.default_rng(seeds_of(config.seed).algorithm))
+    np.testing.assert_allclose(warm_up, alike, atol=1e-6)
 
 
 def test_the_warm_up_has_no_noise(tmp_path: Path) -> None:
