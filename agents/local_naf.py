@@ -21,7 +21,8 @@ class LocalNAF(EvenWarmUp, NAF):
 
     A parabola cannot fit a landscape with cliffs and decoys, and then ``mu`` is wrong. So good transitions are replayed
     more often than bad ones, and part of the exploring actions are drawn around the best known action, not around
-    ``mu``. The actions of the warm-up are spread evenly over the action space. ``PRESETS["one-step"]`` holds the other arguments that suit such tasks.
+    ``mu``. The actions of the warm-up are spread evenly over the action space. ``PRESETS["one-step"]`` holds the other
+    arguments that suit such tasks.
 
     :param policy: The policy model to use (MlpPolicy, CnnPolicy, ...)
     :param env: The environment to learn from (if registered in Gym, can be str)
