@@ -39,15 +39,24 @@ class GaussianProcess:
     :param actions: Actions of the episodes, scaled to [-1, 1], of shape (n, dim), the newest last
     :param rewards: Rewards of the episodes, finite, of shape (n,)
     :param kernel: Length and noise; by default the likeliest ones
+    :param length_scales: Length of each dimension over the kernel's; by default all are alike
     """
 
-    def __init__(self, actions: np.ndarray, rewards: np.ndarray, kernel: tuple[float, float] | None = None) -> None:
+    def __init__(
+        self,
+        actions: np.ndarray,
+        rewards: np.ndarray,
+        kernel: tuple[float, float] | None = None,
+        length_scales: Sequence[float] | None = None,
+    ) -> None:
         from scipy.linalg import cho_solve  # Here, because plain NAF needs no scipy
 
         self._known = np.asarray(actions[-MOST_EPISODES:], dtype=float)
         known = bounded(np.asarray(rewards[-MOST_EPISODES:], dtype=float))
         self._doubt = float(np.quantile(known, PRIOR_QUANTILE)) if len(known) else 0.0
-        distances = _squared_distances(self._known, self._known)
+        self._length_scales = np.ones(self._known.shape[1]) if length_scales is None else np.array(length_scales)
+        self._places = self._known / self._length_scales
+        distances = _squared_distances(self._places, self._places)
         growth = math.sqrt(max(self._known.shape[1], 4) / 4)
         lengths = [growth * length for length in LENGTHS]
         self.kernel = _likeliest(distances, known - self._doubt, lengths) if kernel is None else kernel
@@ -64,7 +73,7 @@ class GaussianProcess:
         :param actions: Scaled actions, of shape (m, dim)
         :return: Expected rewards, of shape (m,)
         """
-        covariances = _covariances(_squared_distances(actions, self._known), self._length)
+        covariances = self._covariances_with(actions)
         return self._doubt + covariances @ self._weights
 
     def upper_bounds(self, actions: np.ndarray, deviations: float) -> np.ndarray:
@@ -79,7 +88,7 @@ class GaussianProcess:
         """
         from scipy.linalg import solve_triangular
 
-        covariances = _covariances(_squared_distances(actions, self._known), self._length)
+        covariances = self._covariances_with(actions)
         explained = solve_triangular(self._factor, covariances.T, lower=True) ** 2
         unknown = self._variance * np.maximum(1 - explained.sum(axis=0), 0)
         return self._doubt + covariances @ self._weights + deviations * np.sqrt(unknown)
@@ -106,6 +115,10 @@ class GaussianProcess:
             places = np.vstack([places[highest], draws])
             values = np.concatenate([values[highest], value_of(draws)])
         return places[np.argmax(values)]
+
+    def _covariances_with(self, actions: np.ndarray) -> np.ndarray:
+        """Covariances of some actions with the known ones, of shape (m, n)."""
+        return _covariances(_squared_distances(actions / self._length_scales, self._places), self._length)
 
 
 def _likeliest(distances: np.ndarray, rewards: np.ndarray, lengths: Sequence[float]) -> tuple[float, float]:

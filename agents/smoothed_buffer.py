@@ -1,9 +1,11 @@
 """Replay buffer for noisy tasks of one step: every reward is replaced by what is expected of its action."""
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 
+from sarah.agents.arguments import checked_number
 from sarah.agents.buffers import RankReplayBuffer
 from sarah.agents.gaussian_process import MOST_EPISODES, GaussianProcess
 
@@ -24,11 +26,19 @@ class SmoothedReplayBuffer(RankReplayBuffer):
 
     :param buffer_size: Max number of elements in the buffer; no more than the 500 that the process can know
     :param arguments: Other arguments of :class:`~sarah.agents.buffers.RankReplayBuffer`
-    :param kwargs: The same by name
+    :param length_scales: Distance over which rewards change along each dimension, over that of the others
+    :param kwargs: Other arguments by name
     """
 
-    def __init__(self, buffer_size: int, *arguments: Any, **kwargs: Any) -> None:
+    def __init__(
+        self, buffer_size: int, *arguments: Any, length_scales: Sequence[float] | None = None, **kwargs: Any
+    ) -> None:
         super().__init__(min(buffer_size, MOST_EPISODES), *arguments, **kwargs)
+        self.length_scales = [1.0] * self.action_dim if length_scales is None else list(length_scales)
+        if len(self.length_scales) != self.action_dim:
+            raise ValueError(f"length_scales must be {self.action_dim} numbers, not {len(self.length_scales)}")
+        for length_scale in self.length_scales:
+            checked_number("each of length_scales", length_scale, 0.0, above=True)
         self._process: GaussianProcess | None = None
         self._kernel: tuple[float, float] | None = None
         self._learned: np.ndarray | None = None
@@ -78,6 +88,6 @@ class SmoothedReplayBuffer(RankReplayBuffer):
             rewards = self._without_luck()
             oldest_first = np.arange(self.pos - len(rewards), self.pos)  # Negative ones are at its end
             known = oldest_first[np.isfinite(rewards[oldest_first])]
-            self._process = GaussianProcess(self.actions[known, 0], rewards[known], self._kernel)
+            self._process = GaussianProcess(self.actions[known, 0], rewards[known], self._kernel, self.length_scales)
             self._kernel = self._process.kernel
         return self._process

@@ -24,7 +24,7 @@ from sarah.reports.rankings import rankings
 from sarah.runs.config import ALGORITHMS
 from sarah.runs.run_folder import RunFolder
 
-TASKS = {"stepping": (60, 100, 5), "balance": (150, 500, 12)}
+TASKS = {"stepping": (60, 200, 5), "balance": (150, 500, 12)}
 """Number of episodes of a training, seed of the first one, and number of unseen episodes that judge a recommendation
 along the way, by task."""
 

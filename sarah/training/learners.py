@@ -161,9 +161,10 @@ def check_device(settings: AgentSettings) -> None:
 
 def _naf_arguments(settings: NAFSettings, task: Task) -> dict[str, Any]:
     layers = dict(V=settings.v_layers, mu=settings.mu_layers, L=settings.l_layers, shared=settings.shared_layers)
+    smoothing = dict(length_scales=task.box.length_scales) if settings.smoothed else {}
     return dict(
         replay_buffer_class=LateSmoothedReplayBuffer if settings.smoothed else LateRankReplayBuffer,
-        replay_buffer_kwargs=dict(temperature=settings.temperature),
+        replay_buffer_kwargs=dict(temperature=settings.temperature, **smoothing),
         max_grad_norm=settings.max_grad_norm,
         exploration_std=LinearSchedule(*settings.exploration_std, end_fraction=SCHEDULED_SHARE),
         elite_share=settings.elite_share,

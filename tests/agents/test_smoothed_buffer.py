@@ -96,22 +96,39 @@ def tried(seed: int, count: int = 80, dim: int = 3) -> tuple[np.ndarray, np.ndar
     return rng.uniform(-1, 1, (count, dim)), rng.normal(5.0, 2.0, count)
 
 
-@pytest.mark.parametrize("kernel", [(0.6, 1.0), (0.3, 0.1)])
-def test_expectations_and_bounds_are_as_defined(kernel: tuple[float, float]) -> None:
+@pytest.mark.parametrize(("kernel", "scales"), [((0.6, 1.0), None), ((0.3, 0.1), None), ((0.6, 0.3), (1.0, 0.25, 2.0))])
+def test_expectations_and_bounds_are_as_defined(kernel: tuple[float, float], scales: tuple[float, ...] | None) -> None:
     """Bounds by equation 2.26, with the variance between actions of the highest likelihood."""
     (actions, rewards), places = tried(0), tried(1)[0]
     length, noise = kernel
 
     def covariances(first: np.ndarray, second: np.ndarray) -> np.ndarray:
-        return np.exp(-0.5 * (np.linalg.norm(first[:, None] - second, axis=2) / length) ** 2)
+        differences = (first[:, None] - second) / (length * np.array(scales or 1.0))
+        return np.exp(-0.5 * (differences**2).sum(axis=2))
 
     inverse = np.linalg.inv(covariances(actions, actions) + noise * np.eye(80))
     doubt, between = np.quantile(rewards, PRIOR_QUANTILE), covariances(places, actions)
-    above, process = rewards - doubt, GaussianProcess(actions, rewards, kernel)
+    above, process = rewards - doubt, GaussianProcess(actions, rewards, kernel, scales)
     expected = doubt + between @ inverse @ above
     unknown = (above @ inverse @ above / 80) * (1 - np.einsum("ij,jk,ik->i", between, inverse, between))
     assert process.expected(places) == pytest.approx(expected)
     assert process.upper_bounds(places, 2.0) == pytest.approx(expected + 2.0 * np.sqrt(unknown))
+
+
+def test_a_dip_of_a_short_length_scale_is_seen() -> None:
+    """Between two good ranges that few trials separate, a longer length expects more than has ever been seen."""
+    rng, found = np.random.default_rng(0), []
+    tried_values = rng.choice([-0.95, -0.85, -0.6, -0.5], 50)  # the dip is from -0.8 to -0.7
+    for length_scales in (None, (0.25, 1.0)):
+        buffer = SmoothedReplayBuffer(100, BOX, BOX, "cpu", length_scales=length_scales)
+        for value in (*tried_values, -0.76, -0.74, *rng.uniform(0, 1, 10)):
+            good = value < -0.4 and not -0.8 < value < -0.7
+            add(buffer, np.array([value, rng.uniform(-1, 1)]), 0.9 * good + 0.6 * (value < -0.4 and not good))
+        found.append(buffer.best_action()[0])
+    assert -0.82 < found[0] < -0.65 and not -0.82 < found[1] < -0.68
+    for wrong, words in (((1.0,), "must be 2 numbers, not 1"), ((1.0, 0.0), "must be a number above 0, not 0.0")):
+        with pytest.raises(ValueError, match=words):
+            SmoothedReplayBuffer(10, BOX, BOX, "cpu", length_scales=wrong)
 
 
 def test_an_optimist_leaves_a_good_place_for_a_possible_one() -> None:

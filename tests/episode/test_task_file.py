@@ -65,6 +65,7 @@ def test_workers_refuse_the_task_of_a_script(workers: Workers) -> None:
 
 
 REPLACED = "import dataclasses, sarah\nJUMP = dataclasses.replace(sarah.STEPPING, name="
+SHORT_SCALE = "import sarah\nP = sarah.Parameter('P', 0, 1, '', 'a', 'b', length_scale=0)\n"
 ODD = "import sarah\nP = sarah.Parameter('P', 0.0, 1.0, '$m$', 'a', 'b')\n"
 OWN = "import sarah\nclass Own(sarah.EpisodeConfig): pass\n"
 
@@ -78,6 +79,10 @@ OWN = "import sarah\nclass Own(sarah.EpisodeConfig): pass\n"
         ("import not_installed_anywhere\n", "my_task.py, line 1: ModuleNotFoundError"),
         ("import sarah\nJUMP = sarah.STEPPING\n", "is that of a task of this package"),
         (f"{ODD}{REPLACED}'j', parameters=(P,), baseline=(0.5,))\n", "unit and meaning of parameter P must be plain"),
+        (
+            f"{SHORT_SCALE}{REPLACED}'j', parameters=(P,), baseline=(0,))\n",
+            "P must be a number from 0.01 to 100, not 0.0",
+        ),
         (f"\ufeff{REPLACED}'a b')\n", "a task's name must be letters, digits, - and _, not 'a b'"),
         (f"{REPLACED}'j', baseline=(1, 1))\n", r"baseline must be 5 numbers \(P1 to P5\), not 2"),
         (f"{OWN}{REPLACED}'j', episode=Own())\n", "must be one of EpisodeConfig, PushedConfig, BalanceConfig, not Own"),

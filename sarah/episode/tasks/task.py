@@ -32,6 +32,8 @@ LARGEST = 1e6
 """Largest end of a parameter's range."""
 NARROW = 2.0**-20
 """Width of a range in which 32-bit numbers tell hardly any values apart, as a share of the larger end."""
+SHORTEST = 0.01
+"""Shortest length scale of a parameter, and reciprocal of the longest."""
 
 
 def _is_plain(text: object) -> bool:
@@ -143,6 +145,9 @@ class Task(Generic[ConfigType]):
             if parameter.width <= NARROW * max(abs(parameter.low), abs(parameter.high)):
                 ends = f"{parameter.low!r} and {parameter.high!r}"
                 raise ConfigurationError(f"ends of parameter {name} are too near to each other to learn it: {ends}")
+            if not is_number(parameter.length_scale) or not SHORTEST <= parameter.length_scale <= 1.0 / SHORTEST:
+                allowed = f"a number from {SHORTEST:g} to {1.0 / SHORTEST:g}, not {shortened(parameter.length_scale)}"
+                raise ConfigurationError(f"length_scale of parameter {name} must be {allowed}")
         if not names:
             raise ConfigurationError(f"task {self.name!r} needs at least one parameter")
         object.__setattr__(self, "baseline", self.box.checked(self.baseline, "baseline"))
