@@ -160,8 +160,8 @@ STEPPING_PARAMETERS = (
     Parameter("P4", 0.0, 2.0, "", "longer time-out of LIFT, by the factor 1 + P4", "hardly matters"),
     Parameter("P5", 0.0, 2.0, "", "longer time-outs of SHIFT and LAND, by the factor 1 + P5", "hardly matters"),
 )
-"""P1 to P5. The paper observed that they must be positive; the upper ends are this project's. Around a P1 of 0.2 the
-robot steps too fast, and on both sides of it well: a range of 0.2 that few episodes would hide."""
+"""P1 to P5. The paper observed that they must be positive; the upper ends are this project's. The
+robot steps well on both sides of a P1 of 0.2, where it steps too fast: so P1 has a shorter length scale."""
 BALANCE_PARAMETERS = (
     Parameter(
         "V1", -2.0, 2.0, "", "gain from lateral acceleration to abduction, and from tipping over to spread", MATTERS
