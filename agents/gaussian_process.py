@@ -8,7 +8,7 @@ import numpy as np
 from sarah.agents.corrections import bounded
 
 LENGTHS = (0.6, 0.3)
-"""Length scales to choose from, in actions scaled to [-1, 1]; the first is the prior's favourite.
+"""Lengths to choose from, in actions scaled to [-1, 1]; the first is the prior's favourite.
 With more than four numbers they grow with the distances in the box, as the root of the number."""
 NOISES = (1.0, 0.3, 0.1, 0.03)
 """Variances of a reward by chance to choose from, as shares of the variance between actions; likewise."""
@@ -39,7 +39,7 @@ class GaussianProcess:
     :param actions: Actions of the episodes, scaled to [-1, 1], of shape (n, dim), the newest last
     :param rewards: Rewards of the episodes, finite, of shape (n,)
     :param kernel: Length and noise; by default the likeliest ones
-    :param length_scales: Length of each dimension over the kernel's; by default all are alike
+    :param length_scales: Factor on the length along each dimension; by default 1
     """
 
     def __init__(
@@ -55,8 +55,8 @@ class GaussianProcess:
         known = bounded(np.asarray(rewards[-MOST_EPISODES:], dtype=float))
         self._doubt = float(np.quantile(known, PRIOR_QUANTILE)) if len(known) else 0.0
         self._length_scales = np.ones(self._known.shape[1]) if length_scales is None else np.array(length_scales)
-        self._places = self._known / self._length_scales
-        distances = _squared_distances(self._places, self._places)
+        self._scaled_known = self._known / self._length_scales
+        distances = _squared_distances(self._scaled_known, self._scaled_known)
         growth = math.sqrt(max(self._known.shape[1], 4) / 4)
         lengths = [growth * length for length in LENGTHS]
         self.kernel = _likeliest(distances, known - self._doubt, lengths) if kernel is None else kernel
@@ -118,7 +118,7 @@ class GaussianProcess:
 
     def _covariances_with(self, actions: np.ndarray) -> np.ndarray:
         """Covariances of some actions with the known ones, of shape (m, n)."""
-        return _covariances(_squared_distances(actions / self._length_scales, self._places), self._length)
+        return _covariances(_squared_distances(actions / self._length_scales, self._scaled_known), self._length)
 
 
 def _likeliest(distances: np.ndarray, rewards: np.ndarray, lengths: Sequence[float]) -> tuple[float, float]:

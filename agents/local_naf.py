@@ -37,7 +37,7 @@ class LocalNAF(EvenWarmUp, NAF):
         that wide draws follow what is known
     :param first_action_centre: Whether the first environment's first action is the centre of the action space, often
         a neutral one. Then actions around the best one are drawn as soon as its outcome is known, and the others of the
-        warm-up are uniform
+        warm-up are uniform, not spread evenly
     :param _init_setup_model: Whether or not to build the network at the creation of the instance
 
     The other arguments are those of :class:`~sarah.agents.naf.NAF`.
@@ -142,7 +142,7 @@ class LocalNAF(EvenWarmUp, NAF):
         if elite_share > 0 and self._knows_a_best_action(learning_starts):
             self._draw_near_best(scaled_action, elite_share)
             action = self.policy.unscale_action(scaled_action)
-        return action, scaled_action
+        return self._begin_at_centre(action, scaled_action)
 
     def _knows_a_best_action(self, learning_starts: int) -> bool:
         """Whether the draws around it may begin: after the warm-up, or with the outcome of the centre."""

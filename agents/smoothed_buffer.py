@@ -26,19 +26,21 @@ class SmoothedReplayBuffer(RankReplayBuffer):
 
     :param buffer_size: Max number of elements in the buffer; no more than the 500 that the process can know
     :param arguments: Other arguments of :class:`~sarah.agents.buffers.RankReplayBuffer`
-    :param length_scales: Distance over which rewards change along each dimension, over that of the others
+    :param length_scales: Factor on the length along each dimension, from 0.01 to 100: below 1 where rewards change fast
     :param kwargs: Other arguments by name
     """
+
+    length_scales: list[float] | None = None
 
     def __init__(
         self, buffer_size: int, *arguments: Any, length_scales: Sequence[float] | None = None, **kwargs: Any
     ) -> None:
         super().__init__(min(buffer_size, MOST_EPISODES), *arguments, **kwargs)
-        self.length_scales = [1.0] * self.action_dim if length_scales is None else list(length_scales)
-        if len(self.length_scales) != self.action_dim:
-            raise ValueError(f"length_scales must be {self.action_dim} numbers, not {len(self.length_scales)}")
-        for length_scale in self.length_scales:
-            checked_number("each of length_scales", length_scale, 0.0, above=True)
+        if length_scales is not None:
+            given = np.ravel(np.array(length_scales, dtype=object)).tolist()
+            if len(given) != self.action_dim:
+                raise ValueError(f"length_scales must be {self.action_dim} numbers, not {length_scales!r}")
+            self.length_scales = [checked_number("each of length_scales", one, 0.01, 100.0) for one in given]
         self._process: GaussianProcess | None = None
         self._kernel: tuple[float, float] | None = None
         self._learned: np.ndarray | None = None

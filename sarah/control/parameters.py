@@ -25,8 +25,8 @@ class Parameter:
     :param unit: SI unit; empty for a number without one
     :param meaning: effect on the controller, as a noun phrase
     :param paper: value or remark that the paper gives
-    :param length_scale: distance over which outcomes change, as a share of the range, over that of other parameters: a
-        training smooths outcomes over it
+    :param length_scale: factor on the distance over which a training smooths outcomes, which it measures as a share of
+        the range: below 1 where outcomes change fast
     """
 
     name: str

@@ -1,7 +1,7 @@
 """stable-baselines3's algorithms, which begin as NAF does, so that only what they learn is compared.
 
-Their warm-up has no noise: stable-baselines3 adds the action noise to it, so that many actions lie on a bound. A saved
-model is that of the plain algorithm, and loads as such.
+They warm up as :class:`~sarah.agents.even_warm_up.EvenWarmUp` says, without noise: stable-baselines3 adds the action
+noise, so that many actions lie on a bound. A saved model is that of the plain algorithm, and loads as such.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ class _Beginning(EvenWarmUp):
         self, learning_starts: int, action_noise: ActionNoise | None = None, n_envs: int = 1
     ) -> tuple[np.ndarray, np.ndarray]:
         noise = None if self.num_timesteps < learning_starts else action_noise
-        return super()._sample_action(learning_starts, noise, n_envs)
+        return self._begin_at_centre(*super()._sample_action(learning_starts, noise, n_envs))
 
 
 class BeginningTD3(_Beginning, TD3):

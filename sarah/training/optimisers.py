@@ -140,8 +140,9 @@ class OptunaSearch:
             name: optuna.distributions.FloatDistribution(-1.0, 1.0) for name in map(str, range(len(box.parameters)))
         }
         first = [] if start.first is None else [box.scaled(start.first)]
-        generator, count, dim = np.random.default_rng(seed), start.warm_up - len(first), len(box.parameters)
-        drawn = generator.uniform(-1.0, 1.0, (count, dim)) if first else latin_hypercube(count, dim, generator)
+        generator = np.random.default_rng(seed)
+        shape = (start.warm_up - len(first), len(box.parameters))
+        drawn = generator.uniform(-1.0, 1.0, shape) if first else latin_hypercube(*shape, generator)
         for action in (*first, *drawn.tolist()):
             self._study.enqueue_trial(dict(zip(self._ranges, action, strict=True)))
         self._asked: deque[Any] = deque()

@@ -2,6 +2,8 @@
 
 import math
 from functools import partial
+from pathlib import Path
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -111,6 +113,16 @@ def test_the_warm_up_of_local_naf_is_spread_evenly(n_envs: int, learning_starts:
     np.testing.assert_allclose(explored(steps, action_noise=noise), 1.0, atol=1e-6)  # that is given, it counts
 
 
+def test_a_warm_up_goes_on_with_more_environments(tmp_path: Path):
+    LocalNAF("MlpPolicy", Recorder(), learning_starts=6, seed=0, **SMALL).learn(3).save(tmp_path / "model")
+    envs = [Recorder() for _ in range(2)]
+    remaining = iter(envs)
+    model = LocalNAF.load(tmp_path / "model", env=DummyVecEnv([lambda: next(remaining)] * 2))
+    model.learn(8, reset_num_timesteps=False)
+    actions = np.array([env.actions for env in envs])
+    assert actions.shape == (2, 4, 2) and len(np.unique(actions)) == 16
+
+
 class Target(Recorder):
     """Rewards what is near (0.5, -0.5), in scaled actions."""
 
@@ -131,10 +143,14 @@ def elite_actions(steps: int, environment: type[Recorder] = Target, **kwargs) ->
 
 @pytest.mark.parametrize("on_request", [False, True])
 def test_only_the_first_environment_begins_at_the_centre(on_request: bool):
-    kwargs = dict(learning_starts=30, elite_share=0.0, first_action_centre=on_request)
-    actions = explore(4, n_envs=2, algorithm=LocalNAF, **kwargs)
-    assert (actions[0, 0] == 0.0).all() == on_request
-    assert (actions[0, 1] != 0.0).all() and (actions[1:] != 0.0).all()
+    envs = [Recorder() for _ in range(2)]
+    remaining = iter(envs)
+    kwargs: Any = dict(learning_starts=30, gradient_steps=0, seed=0, elite_share=1.0, first_action_centre=on_request)
+    model = LocalNAF("MlpPolicy", DummyVecEnv([lambda: next(remaining)] * 2), **SMALL, **kwargs)
+    model.learn(8).learn(8)  # the second time a best action is known from the beginning
+    actions = (np.stack([env.actions for env in envs], axis=1) - [1.0, -1.0]) / [1.0, 2.0]
+    assert [(actions[step, 0] == 0.0).all() for step in (0, 4)] == [on_request] * 2
+    assert (actions[[1, 2, 3, 5, 6, 7]] != 0.0).all() and (actions[:, 1] != 0.0).all()
 
 
 def test_from_the_centre_the_draws_begin_at_once():

@@ -1,5 +1,7 @@
 """What a Gaussian process expects of actions, by its definition, and a replay buffer whose rewards are that."""
 
+from typing import Any
+
 import numpy as np
 import pytest
 from gymnasium import spaces
@@ -118,17 +120,28 @@ def test_expectations_and_bounds_are_as_defined(kernel: tuple[float, float], sca
 def test_a_dip_of_a_short_length_scale_is_seen() -> None:
     """Between two good ranges that few trials separate, a longer length expects more than has ever been seen."""
     rng, found = np.random.default_rng(0), []
-    tried_values = rng.choice([-0.95, -0.85, -0.6, -0.5], 50)  # the dip is from -0.8 to -0.7
+    tried_values = rng.choice([-0.95, -0.85, -0.6, -0.5], 50)
     for length_scales in (None, (0.25, 1.0)):
         buffer = SmoothedReplayBuffer(100, BOX, BOX, "cpu", length_scales=length_scales)
         for value in (*tried_values, -0.76, -0.74, *rng.uniform(0, 1, 10)):
-            good = value < -0.4 and not -0.8 < value < -0.7
-            add(buffer, np.array([value, rng.uniform(-1, 1)]), 0.9 * good + 0.6 * (value < -0.4 and not good))
-        found.append(buffer.best_action()[0])
-    assert -0.82 < found[0] < -0.65 and not -0.82 < found[1] < -0.68
-    for wrong, words in (((1.0,), "must be 2 numbers, not 1"), ((1.0, 0.0), "must be a number above 0, not 0.0")):
-        with pytest.raises(ValueError, match=words):
-            SmoothedReplayBuffer(10, BOX, BOX, "cpu", length_scales=wrong)
+            reward = 0.0 if value > -0.4 else 0.6 if -0.8 < value < -0.7 else 0.9
+            add(buffer, np.array([value, rng.uniform(-1, 1)]), reward)
+        found.append(-0.82 < buffer.best_action()[0] < -0.65)
+    assert found == [True, False]
+
+
+@pytest.mark.parametrize(
+    ("wrong", "words"),
+    [
+        ((1.0,), r"must be 2 numbers, not \(1.0,\)"),
+        (0.25, "must be 2 numbers, not 0.25"),
+        ((1.0, 0.0), "must be a number from 0.01 to 100, not 0.0"),
+        ((1.0, float("nan")), "must be a number from 0.01 to 100, not nan"),
+    ],
+)
+def test_bad_length_scales_are_refused(wrong: Any, words: str) -> None:
+    with pytest.raises(ValueError, match=words):
+        SmoothedReplayBuffer(10, BOX, BOX, "cpu", length_scales=wrong)
 
 
 def test_an_optimist_leaves_a_good_place_for_a_possible_one() -> None:

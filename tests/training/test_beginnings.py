@@ -61,7 +61,7 @@ def test_the_first_episode_of_every_algorithm_is_neutral(algo: str, tmp_path: Pa
 
 @pytest.mark.parametrize("algo", sorted(set(ALGORITHMS) - set(WITHOUT_WARM_UP)))
 def test_the_warm_up_without_neutral_parameters_is_spread_evenly(algo: str, tmp_path: Path) -> None:
-    """The score is near 0 where P1 is above 1. In one training of twenty, five uniform draws are all there."""
+    """The score is near 0 where P1 is above 1. Five uniform draws may all be there."""
     config = TrainingConfig(algo=algo, episodes=6, slots=1, seed=114, episode=EPISODE)
     warm_up = trained(tmp_path / "run", config)[1][:5]
     assert np.sort(np.floor(2.5 * (warm_up + 1)), axis=0).T.tolist() == [[0, 1, 2, 3, 4]] * 5
