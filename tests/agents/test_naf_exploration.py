@@ -16,7 +16,7 @@ from stable_baselines3.common.vec_env import DummyVecEnv
 
 from sarah.agents import NAF, LocalNAF
 
-SMALL = {"policy_kwargs": {"net_arch": [8]}}
+SMALL: Any = {"policy_kwargs": {"net_arch": [8]}}
 """Networks that nothing is learned with: quick ones."""
 
 
@@ -145,8 +145,10 @@ def elite_actions(steps: int, environment: type[Recorder] = Target, **kwargs) ->
 def test_only_the_first_environment_begins_at_the_centre(on_request: bool):
     envs = [Recorder() for _ in range(2)]
     remaining = iter(envs)
-    kwargs: Any = dict(learning_starts=30, gradient_steps=0, seed=0, elite_share=1.0, first_action_centre=on_request)
-    model = LocalNAF("MlpPolicy", DummyVecEnv([lambda: next(remaining)] * 2), **SMALL, **kwargs)
+    kwargs: Any = (
+        dict(learning_starts=30, gradient_steps=0, seed=0, elite_share=1.0, first_action_centre=on_request) | SMALL
+    )
+    model = LocalNAF("MlpPolicy", DummyVecEnv([lambda: next(remaining)] * 2), **kwargs)
     model.learn(8).learn(8)  # the second time a best action is known from the beginning
     actions = (np.stack([env.actions for env in envs], axis=1) - [1.0, -1.0]) / [1.0, 2.0]
     assert [(actions[step, 0] == 0.0).all() for step in (0, 4)] == [on_request] * 2
