@@ -217,7 +217,7 @@ def test_only_seeds_with_all_algorithms_are_ranked() -> None:
 def test_a_race_of_one_task_is_shown_before_the_other_is_run() -> None:
     rows = DataFrame([training(0, algorithm, (0.5, 0.7), 0.2) for algorithm in ALGORITHMS])
     assert "The race of the Second Training is still to be made." in race.answer(rows)
-    assert "(seeds from 100 on: 1 of 20 so far)" in race.final_stepping(rows)
+    assert "(seeds from 200 on: 1 of 20 so far)" in race.final_stepping(rows)
     assert race.way_balance(rows) == "*Still to be made.*"
 
 
