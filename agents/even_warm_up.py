@@ -1,4 +1,4 @@
-"""A warm-up whose actions are spread evenly over the action space, so that few of them find what works."""
+"""A warm-up whose actions are spread evenly over the action space, so that a few find what works."""
 
 import math
 
