@@ -120,6 +120,8 @@ def main() -> None:
             return
         with run.journal_of(run.config()):  # what cannot go on is refused before workers start
             pass
+    elif options.out is not None:
+        RunFolder(options.out).check_new()
 
     try_task(config.task, config.episode)
     with Workers(options.workers, options.scheduler) as workers:

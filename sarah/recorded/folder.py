@@ -43,6 +43,14 @@ class Folder:
         """Whether it has come to its end, with a result."""
         return self.result_path.is_file()
 
+    def check_new(self) -> None:
+        """Refuse a folder that has something in it, before work that only a new one makes worthwhile.
+
+        :raises RunFolderError: if the folder is not empty
+        """
+        if self.path.is_dir():
+            self._check_new()
+
     def begin(self, write_specification: Callable[[], None]) -> None:
         """Make a new folder, and write the command, the versions, and what is to be done.
 

@@ -39,7 +39,7 @@ MISTAKES = {
         ("--from full", "--from is for --task balance, not 'stepping'"),
         ("--workers 2 --scheduler tcp://127.0.0.1:9", "give one of the two"),
         ("--scheduler nonsense", "no Dask scheduler answers at 'nonsense'"),
-        ("--out full", "run folder full is not empty: name another with --out"),
+        ("--out full --workers 1000", "run folder full is not empty: name another with --out"),
         ("--out full/precious.txt", "cannot write run folder"),
         ("--resume full", "full is not the folder of a training: it has no config.yaml"),
         ("--agent.v-layers 8 x", "--agent.v-layers must be whole numbers, not ['8', 'x']"),
