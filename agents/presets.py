@@ -33,7 +33,7 @@ PRESETS: dict[str, dict[str, Any]] = {
     "noisy": ONE_STEP
     | dict(replay_buffer_kwargs=dict(temperature=8.0), elite_std=LinearSchedule(1.2, 0.15, end_fraction=0.8)),
     # Of NAF: the networks of Kouppas et al., literally. Their bias of 1 at the output of mu is the centre
-    # of Box(0, 2), which in scaled actions is 0. On episodes of one step they hardly learn.
+    # of Box(0, 2), which in scaled actions is 0. With the settings of "one-step" they hardly learn.
     "paper": dict(
         policy_kwargs=dict(
             net_arch=dict(V=[256] * 3, mu=[16] * 4, L=[80] * 4),

@@ -1,8 +1,8 @@
 """How much do exploration and replay decide what W converges to?
 
-W is the mean value of replayed actions near mu, so it should fall behind what mu earns where actions are noisier, or
-where the buffer remembers more. Beside it, the return of mu itself from the same states, discounted as W is, and the
-share of a batch that the weights of W leave effective.
+W is the mean value of replayed actions near mu. So it should fall behind what mu earns where actions are noisier, or
+where the buffer remembers more of what the agent did earlier. Beside it are the returns of mu alone and of mu with its
+noise, from the same states and discounted as W is, and the share of a batch that the weights of W leave effective.
 """
 
 from __future__ import annotations
@@ -17,7 +17,6 @@ import torch as th
 from pandas import DataFrame
 
 from experiments.experiment import Experiment, product
-from experiments.interquartile import interquartile_mean
 from experiments.naf.learners import EVALUATION_SEED
 from experiments.record import Row
 from experiments.shapes import groups
@@ -26,7 +25,10 @@ from sarah.agents import NAF
 from sarah.agents.losses import nearby_weights
 
 TASKS = ("Pendulum-v1", "HalfCheetah-v5")
-DEFAULT_STD = 0.3
+STDS = (0.1, 0.3, 0.5)
+"""Standard deviations of the noise; that in the middle is NAF's default."""
+LONG = 1_000
+"""Steps of an episode in which mu is judged: what follows counts less than 0.0001, and W knows no time limit."""
 BATCHES = 20
 """Number of batches whose weights are looked at."""
 
@@ -43,43 +45,47 @@ class Exploration(Experiment):
 
     def cases(self) -> list[Row]:
         """Each training: the first seed of all first."""
-        kinds = [(std, self.steps) for std in (0.1, 0.2, DEFAULT_STD, 0.4, 0.5)]
-        kinds.insert(3, (DEFAULT_STD, self.small_buffer))
-        return [
-            {"task": case["task"], "exploration_std": std, "buffer": buffer, "seed": case["seed"]}
-            for case in product(seed=range(self.seeds), task=TASKS)
-            for std, buffer in kinds
-        ]
+        buffers = (self.steps, self.small_buffer)
+        return product(seed=range(self.seeds), task=TASKS, exploration_std=STDS, buffer=buffers)
 
-    def rows(self, task: str, exploration_std: float, buffer: int, seed: int) -> Iterator[Row]:
+    def rows(self, seed: int, task: str, exploration_std: float, buffer: int) -> Iterator[Row]:
         """What is learned, and what W says of it."""
         th.set_num_threads(1)
         model = NAF(
             "MlpPolicy", task, exploration_std=exploration_std, buffer_size=buffer, seed=seed, device="cpu"
         ).learn(self.steps)
         model.policy.set_training_mode(False)
-        yield {**_judged(model, gym.make(task), self.episodes), "effective_share": _effective_share(model)}
+        env = gym.make(task, max_episode_steps=LONG)
+        seeds = range(EVALUATION_SEED, EVALUATION_SEED + self.episodes)
+        found = [_judged(model, env, episode, exploration_std) for episode in seeds]
+        means = {column: float(np.mean([one[column] for one in found])) for column in found[0]}
+        yield {**means, "effective_share": _effective_share(model)}
 
 
 FULL = Exploration()
 QUICK = Exploration(steps=120, small_buffer=60, seeds=1, episodes=1)
 
 
-def _judged(model: NAF, env: gym.Env, episodes: int) -> Row:
-    """Returns of mu, plain and discounted, and W of the states where its episodes begin: means."""
-    found = np.zeros((episodes, 3))
-    for episode in range(episodes):
-        observation, _ = env.reset(seed=EVALUATION_SEED + episode)
-        with th.no_grad():
-            found[episode, 2] = model.q_net.target_value(model.policy.obs_to_tensor(observation)[0]).item()
-        discount, ended = 1.0, False
-        while not ended:
-            action, _ = model.predict(observation, deterministic=True)
-            observation, reward, terminated, truncated, _ = env.step(action)
-            found[episode, :2] += float(reward), discount * float(reward)
-            discount *= model.gamma
-            ended = terminated or truncated
-    return dict(zip(("return", "discounted_return", "w"), found.mean(axis=0).tolist(), strict=True))
+def _judged(model: NAF, env: gym.Env, seed: int, std: float) -> Row:
+    """W where an episode begins, and the discounted returns of mu there, alone and with noise."""
+    observation, _ = env.reset(seed=seed)
+    with th.no_grad():
+        w = model.q_net.target_value(model.policy.obs_to_tensor(observation)[0]).item()
+    return {"w": w, "of_mu": _discounted(model, env, seed, 0.0), "with_noise": _discounted(model, env, seed, std)}
+
+
+def _discounted(model: NAF, env: gym.Env, seed: int, std: float) -> float:
+    """Discounted return of an episode of mu with noise on scaled actions."""
+    noise, found, discount, ended = np.random.default_rng(seed), 0.0, 1.0, False
+    observation, _ = env.reset(seed=seed)
+    while not ended:
+        mu = model.policy.scale_action(model.predict(observation, deterministic=True)[0])
+        action = model.policy.unscale_action(np.clip(mu + std * noise.standard_normal(mu.shape), -1.0, 1.0))
+        observation, reward, terminated, truncated, _ = env.step(action)
+        found += discount * float(reward)
+        discount *= model.gamma
+        ended = terminated or truncated
+    return found
 
 
 def _effective_share(model: NAF) -> float:
@@ -94,33 +100,38 @@ def _effective_share(model: NAF) -> float:
 
 
 def _of_kinds(rows: DataFrame) -> DataFrame:
-    """A row for each kind of training: interquartile means of its seeds."""
-    found: list[Row] = []
-    for (task, std, buffer), of in groups(rows, "task", "exploration_std", "buffer").items():
-        about = {"task": task, "exploration_std": std, "buffer": buffer, "seeds": so_far(len(of), FULL.seeds)}
-        columns = ("return", "discounted_return", "w", "effective_share")
-        found.append({**about, **{column: interquartile_mean(of[column])[0] for column in columns}})
-    return DataFrame(found)
+    """A row for each kind of training: means of its seeds."""
+    found = rows.groupby(["task", "buffer", "exploration_std"], sort=True).mean().drop(columns="seed")
+    seeds = rows.groupby(["task", "buffer", "exploration_std"], sort=True).size()
+    return found.assign(seeds=[so_far(made, FULL.seeds) for made in seeds]).reset_index()
 
 
 def answer(rows: DataFrame) -> str:
-    """How far W is behind what mu earns, at the narrowest noise and at the widest."""
+    """How far W is from what mu earns, at the narrowest noise and at the widest, with both buffers."""
     sentences = []
     for task, of in groups(_of_kinds(rows), "task").items():
-        full = of[of.buffer == of.buffer.max()].sort_values("exploration_std")
-        behind = [f"{shown(row.discounted_return - row.w, '.1f')}" for _, row in full.iloc[[0, -1]].iterrows()]
-        widths = [shown(std, ".1f") for std in full.exploration_std.iloc[[0, -1]]]
-        sentences.append(
-            f"On {task} W ends {behind[0]} below the discounted return of mu with noise of {widths[0]}, and "
-            f"{behind[1]} below with {widths[1]}; the weights leave {shown(of.effective_share.mean(), '.0%')} of a "
-            "batch effective."
-        )
+        share = shown(of.effective_share.mean(), ".0%")
+        sentences.append(f"On {task} the weights of W leave {share} of a batch effective.")
+        for buffer, one in groups(of, "buffer").items():
+            ends = [
+                f"{_beside(row.w - row.of_mu)} with noise of {shown(row.exploration_std, '.1f')}"
+                for _, row in one.iloc[[0, -1]].iterrows()
+            ]
+            sentences.append(f"With a buffer of {buffer:,} W is {' and '.join(ends)}.")
     return " ".join(sentences)
+
+
+def _beside(difference: float) -> str:
+    """How far W is above or below the discounted return of mu, in words."""
+    return f"{shown(abs(difference), '.1f')} {'above' if difference > 0 else 'below'} the return of mu"
 
 
 def values(rows: DataFrame) -> str:
     """W beside what mu earns, for each width of the noise and each buffer."""
-    columns = ["task", "exploration_std", "buffer", "seeds", "return", "discounted_return", "w", "effective_share"]
-    formats = {"exploration_std": ".1f", "return": ".1f", "w": ".1f", "effective_share": ".0%"}
-    caption = f"Returns of mu and W where episodes begin, after {FULL.steps:,} steps: interquartile means."
+    columns = ["task", "buffer", "exploration_std", "seeds", "w", "of_mu", "with_noise", "effective_share"]
+    formats = {"exploration_std": ".1f", "w": ".1f", "of_mu": ".1f", "with_noise": ".1f", "effective_share": ".0%"}
+    caption = (
+        f"After {FULL.steps:,} steps: W where episodes begin, and the discounted return from there, of mu and of mu "
+        "with its noise. Means of the seeds."
+    )
     return table(_of_kinds(rows), columns, caption, **formats)

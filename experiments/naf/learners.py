@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import copy
+import math
 import warnings
 from collections.abc import Mapping
 from typing import Any, ClassVar, NamedTuple
@@ -29,14 +31,19 @@ DOCUMENTED_STD = 0.1
 
 
 class Watched(NAF):
-    """NAF that remembers how near its V came to the bound."""
+    """NAF that remembers how near its V came to the bound since somebody asked."""
 
-    highest_ratio = 0.0
+    highest_ratio = -math.inf
 
     def train(self, gradient_steps: int, batch_size: int = 100) -> None:
         """Train, and look at the log."""
         super().train(gradient_steps, batch_size)
         self.highest_ratio = max(self.highest_ratio, self.logger.name_to_value["train/value_over_bound"])
+
+    def ratio(self) -> float | None:
+        """Highest ratio since the last call; none without an update since."""
+        found, self.highest_ratio = self.highest_ratio, -math.inf
+        return found if math.isfinite(found) else None
 
 
 class VInTargets(QuadraticCritic):
@@ -101,30 +108,47 @@ COMPARED = {
     "SAC": Learner(SAC),
     "DDPG": Learner(DDPG, DOCUMENTED_STD),
 }
-PUBLISHED = "NAF as published"
+NO_PARTS = "NAF, none of its parts"
+V_IN_TARGETS = "NAF, V in the targets"
 WITHOUT = {
-    PUBLISHED: Learner(
+    NO_PARTS: Learner(
         Watched, arguments={"policy_kwargs": {"net_arch": dict(V=[256] * 2, shared=[256] * 2, mu=[], L=[])}}
     ),
-    "NAF, V in the targets": Learner(Watched, critic=VInTargets),
+    V_IN_TARGETS: Learner(Watched, critic=VInTargets),
     "NAF, W without weights": Learner(Watched, critic=EvenWeights),
     "NAF, no dropout": Learner(Watched, arguments={"policy_kwargs": {"dropout": 0.0}}),
     "NAF, no normalisation": Learner(Watched, critic=PlainLayers),
     "NAF, no pull": Learner(Watched, critic=NoPull),
 }
 """NAF without its own parts: without all of them, and without one at a time."""
+AS_GU = "NAF, settings of Gu et al."
+LIKE_GU = {
+    AS_GU: Learner(
+        Watched,
+        arguments={
+            "gradient_steps": 5,
+            "tau": 0.001,
+            "max_grad_norm": None,
+            "policy_kwargs": {"net_arch": dict(V=[200] * 2, mu=[200] * 2, L=[200] * 2), "squash_mu": False},
+        },
+    )
+}
+"""Beside the targets also updates, target network, layers and linear mu of Gu et al. (2016); the noise is ours."""
 WITH_NAFS_SETTINGS = {
     "TD3, NAF's settings": Learner(TD3, 0.3, arguments=AS_NAF),
     "DDPG, NAF's settings": Learner(DDPG, 0.3, arguments=AS_NAF),
+    "SAC, NAF's settings": Learner(SAC, arguments={**AS_NAF, "learning_rate": 1e-3}),
 }
+"""With NAF's learning rate too; that of TD3 and DDPG is the same. SAC learns its own noise."""
 WIDER = {f"NAF, noise of {std}": Learner(Watched, arguments={"exploration_std": std}) for std in (0.5, 0.9)}
-LEARNERS = {**COMPARED, **WITHOUT, **WITH_NAFS_SETTINGS, **WIDER}
+LEARNERS = {**COMPARED, **WITHOUT, **LIKE_GU, **WITH_NAFS_SETTINGS, **WIDER}
 
 
 def agent(name: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
     """An agent that has learned nothing yet, with the defaults of its class but for what its name says."""
     of = LEARNERS[name]
-    settings: dict[str, Any] = {"seed": seed, "device": "cpu", **of.arguments}
+    # stable-baselines3 writes into the arguments of the policy, and an agent must not find what another one wrote
+    settings: dict[str, Any] = {"seed": seed, "device": "cpu", **copy.deepcopy(dict(of.arguments))}
     if of.noise is not None:
         zeros = np.zeros(spaces.flatdim(env.action_space))
         settings["action_noise"] = NormalActionNoise(zeros, np.full_like(zeros, of.noise))
@@ -132,16 +156,16 @@ def agent(name: str, env: gym.Env, seed: int) -> OffPolicyAlgorithm:
     return of.algorithm(policy, env, **settings)
 
 
-def mean_return(model: OffPolicyAlgorithm, env: gym.Env, episodes: int) -> float:
-    """Mean return of evaluation episodes, the same for every agent."""
+def mean_return(model: OffPolicyAlgorithm, env: gym.Env, episodes: int, evaluation: int = 0) -> float:
+    """Mean return of evaluation episodes, the same for every agent, and others in each evaluation of a training."""
     judged = Monitor(env)
-    judged.reset(seed=EVALUATION_SEED)
+    judged.reset(seed=EVALUATION_SEED + evaluation)
     returns, _ = evaluate_policy(model, judged, episodes, return_episode_rewards=True)
     return float(np.mean(returns))
 
 
 def course(name: str, task: str, seed: int, steps: int, evaluations: int, episodes: int) -> list[Row]:
-    """A training: its returns along the way, the last at its end, and how near V came to its bound by then.
+    """A training: its returns along the way, and how near V came to its bound since the row before.
 
     :param name: learner
     :param task: environment
@@ -156,8 +180,8 @@ def course(name: str, task: str, seed: int, steps: int, evaluations: int, episod
 
     def evaluate(*_: Any) -> bool:
         if model.num_timesteps % (steps // evaluations) == 0:
-            ratio = getattr(model, "highest_ratio", None)
-            found = mean_return(model, judged, episodes)
+            ratio = model.ratio() if isinstance(model, Watched) else None
+            found = mean_return(model, judged, episodes, len(rows))
             rows.append({"steps": model.num_timesteps, "return": found, "v_over_bound": ratio})
         return True
 
