@@ -53,11 +53,11 @@ def answer(rows: DataFrame) -> str:
     """In how many trainings V exceeds what rewards allow, and what is learned by then."""
     found = groups(ends(rows), "algorithm")
     said = [
-        f"{name}: {int((of.v_over_bound > LIMIT).sum())} of {so_far(len(of), FULL.seeds)} trainings, "
-        f"median return {shown(of['return'].median(), '.0f')}"
+        f"{int((of.v_over_bound > LIMIT).sum())} of {so_far(len(of), FULL.seeds)} trainings of {name!r} "
+        f"(median return {shown(of['return'].median(), '.0f')})"
         for name, of in found.items()
     ]
-    return f"Trainings in which V exceeds what rewards allow within {FULL.steps:,} steps of {TASK}. {'. '.join(said)}."
+    return f"On {TASK}, V exceeds what rewards allow within {FULL.steps:,} steps in {'; in '.join(said)}."
 
 
 def returns(rows: DataFrame) -> str:

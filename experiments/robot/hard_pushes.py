@@ -14,7 +14,7 @@ from experiments.experiment import Experiment, product, survival
 from experiments.record import Row
 from experiments.robot.conditions import CONTROLLERS, SETTINGS, TIME_LIMIT, pushed
 from experiments.shapes import groups
-from experiments.tables import shown, table
+from experiments.tables import shown, span, table
 from sarah.episode.evaluation import evaluate
 from sarah.episode.spec import FIRST_EVALUATION_SEED
 from sarah.episode.tasks import BALANCE
@@ -95,6 +95,7 @@ def _agree_better(rows: DataFrame) -> bool:
 def answer(rows: DataFrame) -> str:
     """How far the engines are apart at each physics, and which figures to believe."""
     hard = (rows.push_n == 125.0) & (rows.controller == "shipped V")
+    locked = rows[(rows.push_n == 125.0) & (rows.controller == "V = 0") & (rows.physics == "reference")].survival
     survived = {physics: group.survival for physics, group in groups(rows[hard], "physics").items()}
     standard, reference = ([shown(share, ".0%") for share in shares] for shares in survived.values())
     verdict = (
@@ -106,7 +107,7 @@ def answer(rows: DataFrame) -> str:
     return (
         f"With the shipped V the robot survives {standard[0]} of pushes of 125 N in PyBullet and {standard[1]} in "
         f"MuJoCo, both at the standard physics. At the reference physics it survives {reference[0]} and "
-        f"{reference[1]}. {verdict}"
+        f"{reference[1]}, and {span(locked, '.0%')} with locked hips. {verdict}"
     )
 
 

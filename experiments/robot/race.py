@@ -5,6 +5,7 @@ What each would recommend along the way, in MuJoCo, is judged by episodes whose 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import partial
@@ -105,12 +106,15 @@ def _compared(rows: DataFrame, task: str, training: str) -> str:
     algorithms = ranked(trainings)
     scores = algorithms.set_index("algorithm").final_score
     better, worse = algorithms.over_naf_low > 0.0, algorithms.over_naf_high < 0.0
-    fewest = algorithms.episodes_to_95.min()
+    held = algorithms.set_index("algorithm").episodes_to_95
+    others = held.drop("naf")
+    finite = others[others < math.inf]
     return (
         f"In the {training} Training the final scores are {span(scores, '.2f')}, and NAF's is "
         f"{shown(scores['naf'], '.2f')}. Better than NAF by more than chance: {_names(algorithms[better])}. Worse: "
-        f"{_names(algorithms[worse])}. First to hold 95 % of the best known score: "
-        f"{_names(algorithms[algorithms.episodes_to_95 == fewest])}, after {shown(fewest, '.0f')} episodes."
+        f"{_names(algorithms[worse])}. NAF's median training holds 95 % of the best known score after "
+        f"{shown(held['naf'], '.0f')} episodes, and those of the others after {span(finite, '.0f')}"
+        f"{', or never' * (len(finite) < len(others))}."
     )
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from functools import cache, partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from sarah.episode.parameter_sets import PARAMETER_SETS
 from sarah.episode.spec import EpisodeSpec
 from sarah.episode.tasks import Task
-from sarah.errors import ConfigurationError, shortened, unknown_name
+from sarah.errors import ConfigurationError, RunFolderError, shortened, unknown_name
 from sarah.number import number
 from sarah.runs.kinds import RECOGNITION, SESSION
 
@@ -102,6 +103,8 @@ def episodes_of(subject: str, which: str | None, task: Task[Any] | None) -> tupl
             )
     elif subject.strip(" +-.")[:1].isdigit():
         given = episode_of_parameters(numbers(subject), task)
+    elif os.sep in subject:
+        raise RunFolderError(f"there is neither a run folder nor a log {shortened(subject)}")
     else:
         names = unknown_name("name of parameters", subject, PARAMETER_SETS)
         raise ConfigurationError(

@@ -30,7 +30,7 @@ class ScoreMetrics:
         "score",
         "",
         "return as a share of the best: standing height, start position and the rewarded step frequency all the time",
-        *("median", "mean", "std", "min"),
+        *("mean", "median", "std", "min"),
         group="episode",
         shown=(1.0, 3, ""),
         paper="reported as reward, no scale",

@@ -30,7 +30,7 @@ FINAL_SHARE = 0.95
 """Share of the best known score that the table counts final recommendations at."""
 
 ORIGINS = {
-    "naf": "chosen on the tasks stepping and balance, its warm-up too, which all algorithms with a model share",
+    "naf": "chosen on the tasks stepping and balance, its warm-up too",
     "td3": "set once by hand, and not tuned",
     "sac": "set once by hand, and not tuned",
     "ddpg": "set once by hand, and not tuned",

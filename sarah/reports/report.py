@@ -12,6 +12,7 @@ from pathlib import Path
 from jinja2 import Environment, StrictUndefined
 from tqdm import tqdm
 
+from sarah.episode.accuracy import physics_warning
 from sarah.episode.episode import simulate
 from sarah.episode.evaluation import Evaluation
 from sarah.episode.result import METRICS, EpisodeResult
@@ -73,6 +74,7 @@ def write_report(
         film, caption = _film(learned, shown, folder, seconds)
     neutral = None if task.neutral is None else of[task.neutral]
     shortcomings = of[learned.parameters].shortcomings(task.must_step, neutral)
+    physics = physics_warning(task, learned.parameters, learned.config)
     page = Environment(autoescape=True, undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True).from_string(
         (files("sarah.reports") / "report.html").read_text(encoding="utf-8")
     )
@@ -84,7 +86,7 @@ def write_report(
         episodes=episodes,
         rows=_parameter_rows(learned) + _result_rows(config, of[learned.parameters], of[task.baseline]),
         baseline=task.baseline_label,
-        warnings=[f"{shortcoming.capitalize()}." for shortcoming in shortcomings],
+        warnings=[f"{warning[:1].upper()}{warning[1:]}." for warning in (*shortcomings, physics) if warning],
         figures=figures,
         film=film,
         film_caption=caption,

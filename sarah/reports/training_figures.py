@@ -17,7 +17,6 @@ from typing import Any
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
-from scipy.ndimage import median_filter
 
 from sarah.control.parameters import PAPER_STEPPING
 from sarah.episode.tasks import BALANCE, STEPPING, Task
@@ -126,7 +125,7 @@ def _mark_warm_up(axis: Axes, curves: Sequence[RunCurves]) -> None:
 def _draw_panel(axis: Axes, curves: RunCurves, column: str, label: str, colour: str) -> None:
     values, learned = curves.columns[column], slice(curves.warm_up, curves.learning)
     steps = np.arange(1, values.shape[1] + 1)
-    smooth = median_filter(values[:, learned], (1, WINDOW))
+    smooth = _running_median(values[:, learned])
     if len(values) == 1:
         dots: dict[str, Any] = {"linestyle": "none", "marker": "o", "markersize": 1.6, "color": colour, "alpha": 0.5}
         axis.plot(steps[learned], values[0, learned], markeredgewidth=0, **dots)
@@ -139,6 +138,12 @@ def _draw_panel(axis: Axes, curves: RunCurves, column: str, label: str, colour: 
         axis.fill_between(steps[learned], low, high, color=colour, alpha=0.25, linewidth=0)
         label += f", {len(values)} runs"
     axis.plot(steps[learned], np.median(smooth, axis=0), color=colour, linewidth=1.2, label=label)
+
+
+def _running_median(values: np.ndarray) -> np.ndarray:
+    """Median around each episode, run by run; near the ends the window holds fewer episodes."""
+    windows = (slice(max(0, index - WINDOW // 2), index + WINDOW // 2 + 1) for index in range(values.shape[1]))
+    return np.array([np.median(values[:, window], axis=1) for window in windows]).reshape(values.T.shape).T
 
 
 def _draw_recommended(axis: Axes, curves: RunCurves, column: str) -> None:

@@ -89,6 +89,7 @@ MISTAKES = {
         (f"{PUSHED} --robustness --out x --forces abc", "--forces must be numbers, not"),
         (f"{PUSHED} --robustness --out x --episode.time_limit=5", "has pushes and a time limit of its own: leave --ep"),
         ("stepping --terrain --out x --episode.push.degrees 1", "has ground, pushes and a time limit of its own: leav"),
+        ("runs/nothing", "there is neither a run folder nor a log 'runs/nothing'"),
     ],
     "sarah-describe": [
         ("--episode.dimensions tigh_length 0.3", "did you mean 'thigh_length'"),

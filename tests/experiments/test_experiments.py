@@ -95,7 +95,7 @@ def test_without_a_name_all_are_listed(capsys: CaptureFixture[str]) -> None:
 MISTAKES = {
     ("firts_training",): r"unknown experiment 'firts_training', did you mean 'first_training'\?",
     ("first_training", "--only", "sed=3"): "KEY=VALUE; unknown key 'sed'",
-    ("first_training", "--only", "run=naf seed 33"): r"unknown run 'naf seed 33', did you mean 'naf seed 3'\?",
+    ("first_training", "--only", "run=naf seed 2299"): r"unknown run 'naf seed 2299', did you mean 'naf seed 229'\?",
     ("first_training", "--seeds", "0"): "--seeds must be at least 1, not 0",
     ("age", "first_training"): "age takes no arguments, not 'first_training'",
 }

@@ -62,7 +62,7 @@ def test_report_is_a_page_that_needs_nothing_else(run: RunFolder, tmp_path: Path
     for name, value in zip(STEPPING.parameter_names, run.parameters(), strict=True):
         assert re.search(rf"<td>{name}[^<]*</td><td>{value:.2f}</td>", text)
     noted = json.loads((run.path / "parameters.json").read_text())["evaluation"]  # of the same seeds
-    assert f"<td>{noted['score_median']:.3f}</td>" in text and f"<td>{noted['vibration_median']:.1f} m²/s⁴</td>" in text
+    assert f"<td>{noted['score_mean']:.3f}</td>" in text and f"<td>{noted['vibration_median']:.1f} m²/s⁴</td>" in text
     assert "about 0.4" in text  # the paper's P1
     assert re.search(r"from 1\.0 to 1\.2 s of [\d.]+ s: .*time_limit 1\.5\.</figcaption>", text)  # what is not as usual
 
@@ -109,7 +109,7 @@ def test_what_a_training_has_evaluated_is_not_simulated_again(
     config = TrainingConfig(task, episodes=1, episode=replace(TASKS[task].episode, time_limit=1.2, physics=PHYSICS))
     run, learned = RunFolder.create(tmp_path / "run", config), (0.5,) * len(TASKS[task].parameters)
     run.append_episode(0, EpisodeSpec(learned, 2**31, task, config.episode), RESULT)
-    summary = {**Evaluation((RESULT,) * 2).summary(), "score_median": 0.987, **noted}
+    summary = {**Evaluation((RESULT,) * 2).summary(), "score_mean": 0.987, **noted}
     named = dict(zip(TASKS[task].parameter_names, learned, strict=True))
     run.write_parameters({"parameters": named, "evaluation": summary, "baseline": TASKS[task].neutral and summary})
     done("sarah-report", "run", "--out", "page.html", "--episodes", "2", cwd=tmp_path)
@@ -126,10 +126,12 @@ def test_what_a_report_cannot_show_is_said(run: RunFolder, tmp_path: Path, monke
         raise ConfigurationError("pictures need a package")
 
     monkeypatch.setattr(report, "check_renderer", refuse)
+    monkeypatch.setattr(report, "physics_warning", lambda *_: "scores err")
     folder = shutil.copytree(run.path, tmp_path / "<i>run")  # a name that is no HTML
     done("sarah-report", str(folder), "--out", "page.html", "--episodes", "1", cwd=tmp_path)
     page = (tmp_path / "page.html").read_text()
     assert "No video: pictures need a package." in page and "<video" not in page
+    assert '<p class="warning">Scores err.</p>' in page
     assert "&lt;i&gt;run" in page and "<i>" not in page
 
 

@@ -97,6 +97,17 @@ def test_several_runs_are_a_median_between_quartiles(tmp_path: Path, drawn: Draw
     assert 2.0 * last.min() == last.max() / 2.0 == pytest.approx(np.ravel(line.get_ydata())[-1])
 
 
+@pytest.mark.parametrize("count", [11, 60])
+def test_the_line_of_a_training_rises_with_its_episodes_to_both_ends(count: int, tmp_path: Path, drawn: Drawn) -> None:
+    draw_figures([run_with_episodes(tmp_path / "run", "stepping", count)], tmp_path / "out")
+    (axis, _) = drawn["figure_4_reward_and_frequency"].axes
+    (line,) = (line for line in axis.lines if line.get_linestyle() == "-")
+    values = np.ravel(line.get_ydata())
+    tried = np.arange(8, count) / count  # after the warm-up
+    assert (np.diff(values) >= 0.0).all()
+    assert values[[0, -1]] == pytest.approx([np.median(tried[:8]), np.median(tried[-8:])])
+
+
 def test_axes_and_lines_have_their_names(tmp_path: Path, drawn: Drawn) -> None:
     run = run_with_episodes(tmp_path / "run", "stepping", 20, "td3")
     run.append_recommendation(5, dict.fromkeys(STEPPING.parameter_names, 0.3))
