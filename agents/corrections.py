@@ -9,12 +9,12 @@ MOST_FITTED = 2_000
 PENALTY = 30.0
 """Penalty of the ridge regression: as if so many further episodes had shown no effect."""
 CHANCE = 0.1
-"""Probability with which a disturbance that explains nothing is taken for one that does, and corrected for."""
+"""Probability with which disturbances that explain nothing are taken for some that do, and corrected for."""
 OUTER_DECILES = (0.1, 0.9)
 LARGEST_DISTANCE = 3.0
 """Largest distance of a return below the lowest decile, in distances between the outer deciles: lower ones count as
 that."""
-SMALLEST_DEVIATION = 1e-9
+SMALLEST_DEVIATION = 1e-12
 """Standard deviation, as a share of the largest amount, below which a number counts as constant."""
 
 
@@ -67,7 +67,8 @@ def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
     """
     Indices of the disturbances that explain more than chance would, by a parabola (F test with 2 degrees of freedom).
 
-    Of a disturbance with two values, which has no parabola, the test asks a little more than that.
+    There are none unless one of them explains more than chance would in the best of so many (Bonferroni). Of a
+    disturbance with two values, which has no parabola, the test asks a little more than that.
 
     :param disturbances: Disturbances, one row an episode
     :param targets: Returns with mean 0
@@ -78,7 +79,8 @@ def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
     curves /= np.sqrt((curves**2).mean(axis=0)) + SMALLEST_DEVIATION  # 0 if there are two values only
     explained = sum((parts.T @ targets) ** 2 for parts in (lines, curves)) / (len(targets) * (targets @ targets))
     probabilities = (1 - np.minimum(explained, 1)) ** ((len(targets) - 3) / 2)
-    return kept[probabilities < CHANCE]
+    is_any = probabilities.size > 0 and probabilities.min() < CHANCE / probabilities.size
+    return kept[probabilities < CHANCE] if is_any else kept[:0]
 
 
 def _features(fitted: np.ndarray, every: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -180,6 +180,19 @@ def test_many_that_explain_nothing_hide_none_that_do(seed: int) -> None:
     assert np.std(corrected(chance[:, 0], disturbances) - chance[:, 0]) < 0.3
 
 
+def test_sets_of_disturbances_without_effect_are_seldom_corrected_for() -> None:
+    rng = np.random.default_rng(0)
+    returns = rng.standard_normal(60)
+    changed = [not np.array_equal(corrected(returns, rng.standard_normal((60, 14))), returns) for _ in range(200)]
+    assert 0.02 < np.mean(changed) < 0.2
+
+
+def test_a_disturbance_far_from_0_is_known_as_well() -> None:
+    """Such as a time of day, in seconds since 1970."""
+    wind = np.random.default_rng(0).standard_normal((100, 1))
+    np.testing.assert_allclose(corrected(wind[:, 0], 1.7e9 + 0.5 * wind), corrected(wind[:, 0], wind), atol=1e-3)
+
+
 @pytest.mark.parametrize("constant", [0.0, 1e-300, -1e9])
 def test_what_is_constant_changes_no_bit(constant: float) -> None:
     (returns, disturbances), constants = drawn(0), np.full((60, 2), constant)

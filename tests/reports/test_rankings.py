@@ -122,6 +122,8 @@ def test_luck_that_two_algorithms_share_is_no_difference() -> None:
     half = 12.706 * 0.1  # Student's factor for one degree of freedom; 0.3 and 0.1 have a standard error of 0.1
     assert (found, low, high) == pytest.approx((0.2, 0.2 - half, 0.2 + half), abs=1e-3)
     assert math.isnan(standard_error(np.array([[0.7]])))  # one training says nothing of other seeds
+    found, *ends = difference(np.array([[0.5], [0.7]]), np.array([[0.4], [0.4]]))  # of one judging episode
+    assert found == pytest.approx(0.2) and np.isnan(ends).all()
     found, *ends = difference(np.array([[0.5, 0.7]]), np.array([[0.4, 0.4]]))
     assert found == pytest.approx(0.2) and all(map(math.isnan, ends))
 
