@@ -124,6 +124,13 @@ def episodes_until(curve: RaceCurve, score: float) -> float:
     return math.inf
 
 
+def _over(scores: np.ndarray, others: np.ndarray) -> tuple[float, float, float]:
+    """Difference from the reference; a single judging episode says nothing of others, so it gives no interval."""
+    found, *ends = difference(scores, others)
+    low, high = ends if scores.shape[1] > 1 else (math.nan, math.nan)
+    return found, low, high
+
+
 def rankings(curves: Sequence[RaceCurve], best: float | None = None, reference: str | None = None) -> Rankings:
     """Summarise a race by algorithm.
 
@@ -145,7 +152,7 @@ def rankings(curves: Sequence[RaceCurve], best: float | None = None, reference: 
                 algo,
                 len(runs),
                 (float(scores[own].mean()), standard_error(scores[own])),
-                difference(scores[own], scores[names == reference]) if compared else None,
+                _over(scores[own], scores[names == reference]) if compared else None,
                 number_at(scores, own, FINAL_SHARE, best),
                 {share: median_high(counts) for share, counts in until.items()},
                 {share: sum(np.isfinite(counts).tolist()) for share, counts in until.items()},

@@ -53,13 +53,14 @@ def difference(scores: np.ndarray, others: np.ndarray) -> tuple[float, float, fl
     :param scores: scores of one algorithm, of shape (trainings, episodes)
     :param others: scores of the other, with the same seeds and episodes
     :return: the difference and both ends of Student's 95 % interval; NaN if there is only one training of each, which
-        says nothing of other seeds, or one episode, which says nothing of others
+        says nothing of other seeds
     """
     paired = scores - others
-    fewest = min(paired.shape)
-    if fewest == 1:
+    trainings, episodes = paired.shape
+    if trainings == 1:
         return float(paired.mean()), math.nan, math.nan
-    half = float(stdtrit(fewest - 1, (1 + CONFIDENCE) / 2)) * standard_error(paired)
+    freedom = (min(trainings, episodes) if episodes > 1 else trainings) - 1
+    half = float(stdtrit(freedom, (1 + CONFIDENCE) / 2)) * standard_error(paired)
     return float(paired.mean()), float(paired.mean() - half), float(paired.mean() + half)
 
 
