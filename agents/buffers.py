@@ -243,5 +243,7 @@ class RankReplayBuffer(ReplayBuffer):
         if self._corrected_rewards is None:
             oldest_first = np.arange(self.pos - len(rewards), self.pos)  # Negative ones are at its end
             self._corrected_rewards = np.empty(len(rewards))
-            self._corrected_rewards[oldest_first] = corrected(rewards[oldest_first], self.disturbances[oldest_first])
+            self._corrected_rewards[oldest_first] = corrected(
+                rewards[oldest_first], self.actions[oldest_first, 0], self.disturbances[oldest_first]
+            )
         return self._corrected_rewards

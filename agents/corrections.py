@@ -1,45 +1,41 @@
 """Returns without the part that known disturbances explain."""
 
+import math
+from collections.abc import Callable
+
 import numpy as np
+
+from sarah.agents.gaussian_process import bounded, first_covariances
 
 FEWEST_EPISODES = 20
 """Number of episodes below which nothing is corrected: so few explain too little."""
-MOST_FITTED = 2_000
-"""Newest episodes that the explanation is fitted to: with more, a correction takes hardly longer."""
+MOST_FITTED = 500
+"""Newest episodes that the explanation is fitted to: the time that it takes grows with the third power of them."""
 PENALTY = 30.0
 """Penalty of the ridge regression: as if so many further episodes had shown no effect."""
 CHANCE = 0.1
 """Probability with which disturbances that explain nothing are taken for some that do, and corrected for."""
-OUTER_DECILES = (0.1, 0.9)
-LARGEST_DISTANCE = 3.0
-"""Largest distance of a return below the lowest decile, in distances between the outer deciles: lower ones count as
-that."""
+EPISODES_PER_FEATURE = 4
+"""Fewest episodes for each feature of the regression: more features would explain anything."""
 SMALLEST_DEVIATION = 1e-12
 """Standard deviation, as a share of the largest amount, below which a number counts as constant."""
 
 
-def bounded(returns: np.ndarray) -> np.ndarray:
-    """
-    Returns of which none is lower than most by far: a few disasters would outweigh all others (Huber 1964).
-
-    :param returns: Returns of shape (n,)
-    :return: The returns, at least the lowest decile less three times the distance between the outer deciles; the given
-        ones if these are the same
-    """
-    if not len(returns):
-        return returns
-    low, high = np.quantile(returns, OUTER_DECILES)
-    return np.maximum(returns, low - LARGEST_DISTANCE * (high - low)) if high > low else returns
-
-
-def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
+def corrected(returns: np.ndarray, actions: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
     """
     Returns less what a ridge regression on the disturbances, their squares and their products explains of them.
 
-    A disturbance that explains no more by itself than chance would is left out: many that matter little would hide the
-    few that matter. The mean stays. A return that is not finite stays as it is, and explains nothing.
+    What near actions have in common is none of it: the remainders of the regression are correlated as in a
+    :class:`~sarah.agents.gaussian_process.GaussianProcess` of the actions with the first length and noise (generalized
+    least squares, Aitken 1935). Otherwise a disturbance that changes while the agent learns would explain what was
+    learned.
+
+    Nothing is explained unless one of the disturbances explains more than chance would in the best of so many. Then
+    those are left out that explain no more by themselves than chance would: many that matter little would hide the few
+    that matter. The mean stays. A return that is not finite stays as it is, and explains nothing.
 
     :param returns: Returns of the episodes, the newest last, of shape (n,)
+    :param actions: Actions of the same episodes, scaled to [-1, 1], of shape (n, dim)
     :param disturbances: Disturbances of the same episodes, of shape (n, number of disturbances)
     :return: Corrected returns, of shape (n,); the given ones if there are fewer than
         :data:`FEWEST_EPISODES`, if nothing varies, or if no disturbance tells
@@ -49,21 +45,44 @@ def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
         return returns
     fitted = known[-MOST_FITTED:]
     scale = np.abs(returns[fitted]).max()
-    if np.ptp(returns[fitted]) == 0:
+    if np.ptp(returns[fitted]) <= SMALLEST_DEVIATION * scale:
         return returns
-    targets = bounded(returns[fitted]) / scale
-    targets -= targets.mean()
-    disturbances = disturbances[:, _telling(disturbances[fitted], targets)]
+    independent = _independent(actions[fitted])
+    targets = independent(bounded(returns[fitted]) / scale)
+    disturbances = disturbances[:, _telling(disturbances[fitted], targets, independent)]
+    if not disturbances.shape[1]:
+        return returns
     known_features, features = _features(disturbances[fitted], disturbances)
-    if not features.shape[1]:
-        return returns
+    known_features = independent(known_features)
     products = known_features.T @ known_features + PENALTY * np.eye(features.shape[1])
     explained = features @ np.linalg.solve(products, known_features.T @ targets)
     explained -= explained[known].mean()  # not 0 where the fit leaves some out
     return returns - scale * explained
 
 
-def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
+def _independent(actions: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """
+    What makes columns of the episodes' numbers independent of the actions, and of what is the same in all episodes.
+
+    :param actions: Actions of the episodes
+    :return: A function of one column, or of an array of columns, with a row for each episode
+    """
+    from scipy.linalg import solve_triangular  # Here, because plain NAF needs no scipy
+
+    factor = np.linalg.cholesky(first_covariances(actions))
+    common = solve_triangular(factor, np.ones(len(actions)), lower=True)
+    common /= np.linalg.norm(common)
+
+    def independent(columns: np.ndarray) -> np.ndarray:
+        columns = solve_triangular(factor, columns, lower=True)
+        return columns - np.tensordot(common, common @ columns, axes=0)
+
+    return independent
+
+
+def _telling(
+    disturbances: np.ndarray, targets: np.ndarray, independent: Callable[[np.ndarray], np.ndarray]
+) -> np.ndarray:
     """
     Indices of the disturbances that explain more than chance would, by a parabola (F test with 2 degrees of freedom).
 
@@ -71,16 +90,28 @@ def _telling(disturbances: np.ndarray, targets: np.ndarray) -> np.ndarray:
     disturbance with two values, which has no parabola, the test asks a little more than that.
 
     :param disturbances: Disturbances, one row an episode
-    :param targets: Returns with mean 0
+    :param targets: Returns, made independent
+    :param independent: What makes columns independent
     """
     kept, lines, _ = _standard(disturbances, disturbances)
-    curves = lines**2 - 1
-    curves -= lines * (lines * curves).mean(axis=0)  # What a line would explain as well
-    curves /= np.sqrt((curves**2).mean(axis=0)) + SMALLEST_DEVIATION  # 0 if there are two values only
-    explained = sum((parts.T @ targets) ** 2 for parts in (lines, curves)) / (len(targets) * (targets @ targets))
+    explained = np.array([_explained(independent(np.column_stack([line, line**2])), targets) for line in lines.T])
     probabilities = (1 - np.minimum(explained, 1)) ** ((len(targets) - 3) / 2)
-    is_any = probabilities.size > 0 and probabilities.min() < CHANCE / probabilities.size
-    return kept[probabilities < CHANCE] if is_any else kept[:0]
+    if not probabilities.size or probabilities.min() >= CHANCE / probabilities.size:
+        return kept[:0]
+    first = np.argsort(probabilities, kind="stable")
+    return kept[np.sort(first[probabilities[first] < CHANCE][: _most_disturbances(len(targets))])]
+
+
+def _explained(columns: np.ndarray, targets: np.ndarray) -> float:
+    """Share of the targets' square sum that columns explain."""
+    directions, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    directions = directions[:, sizes > SMALLEST_DEVIATION**0.5 * sizes[0]]
+    return float(((directions.T @ targets) ** 2).sum() / (targets @ targets))
+
+
+def _most_disturbances(episodes: int) -> int:
+    """Largest number of disturbances whose values, squares and products of two so many episodes can explain."""
+    return int((math.sqrt(9 + 8 * episodes / EPISODES_PER_FEATURE) - 3) / 2)
 
 
 def _features(fitted: np.ndarray, every: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

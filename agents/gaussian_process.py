@@ -5,8 +5,6 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from sarah.agents.corrections import bounded
-
 LENGTHS = (0.6, 0.3)
 """Lengths to choose from, in actions scaled to [-1, 1]; the first is the prior's favourite.
 With more than four numbers they grow with the distances in the box, as the root of the number."""
@@ -26,6 +24,26 @@ STEPS = (0.2, 0.1, 0.05, 0.025)
 """Standard deviations of the draws around the best places so far, in scaled actions: one for each round."""
 BEST_PLACES, DRAWS = 6, 10
 """Number of places that a round draws around, and of draws around each."""
+SMALLEST_UNKNOWN = 1e-12
+"""Smallest share of the variance that is unknown where the expectation is climbed: a slope divides by its root."""
+OUTER_DECILES = (0.1, 0.9)
+LARGEST_DISTANCE = 3.0
+"""Largest distance of a return below the lowest decile, in distances between the outer deciles: lower ones count as
+that."""
+
+
+def bounded(returns: np.ndarray) -> np.ndarray:
+    """
+    Returns of which none is lower than most by far: a few disasters would outweigh all others (Huber 1964).
+
+    :param returns: Returns of shape (n,)
+    :return: The returns, at least the lowest decile less three times the distance between the outer deciles; the given
+        ones if these are the same
+    """
+    if not len(returns):
+        return returns
+    low, high = np.quantile(returns, OUTER_DECILES)
+    return np.maximum(returns, low - LARGEST_DISTANCE * (high - low)) if high > low else returns
 
 
 class GaussianProcess:
@@ -57,8 +75,7 @@ class GaussianProcess:
         self._length_scales = np.ones(self._known.shape[1]) if length_scales is None else np.array(length_scales)
         self._scaled_known = self._known / self._length_scales
         distances = _squared_distances(self._scaled_known, self._scaled_known)
-        growth = math.sqrt(max(self._known.shape[1], 4) / 4)
-        lengths = [growth * length for length in LENGTHS]
+        lengths = _lengths(self._known.shape[1])
         self.kernel = _likeliest(distances, known - self._doubt, lengths) if kernel is None else kernel
         self._length, noise = self.kernel
         covariances = _covariances(distances, self._length) + noise * np.eye(len(known))
@@ -95,7 +112,9 @@ class GaussianProcess:
 
     def best(self, candidates: np.ndarray | None = None, deviations: float = 0.0) -> np.ndarray:
         """
-        Action of the highest expected reward in the box from -1 to 1: random draws, ever closer to the best so far.
+        Action of the highest expected reward in the box from -1 to 1.
+
+        Random draws come ever closer to the best so far, and from there the expectation is climbed.
 
         :param candidates: Scaled actions to begin at beside the known ones; the first one among equals
         :param deviations: Number of standard deviations by which an action may be better than expected
@@ -114,11 +133,52 @@ class GaussianProcess:
             draws = generator.normal(np.repeat(places[highest], DRAWS, axis=0), step).clip(-1, 1)
             places = np.vstack([places[highest], draws])
             values = np.concatenate([values[highest], value_of(draws)])
-        return places[np.argmax(values)]
+        return self._climbed(places[np.argmax(values)], deviations)
+
+    def _climbed(self, action: np.ndarray, deviations: float) -> np.ndarray:
+        """The top of the hill that an action is on, by its gradients (L-BFGS-B, Byrd et al. 1995)."""
+        from scipy.linalg import cho_solve
+        from scipy.optimize import minimize
+
+        if not self._variance:
+            return action
+        known_weights = self._weights / math.sqrt(self._variance)
+
+        def depth(place: np.ndarray) -> tuple[float, np.ndarray]:
+            covariances = _covariances(_squared_distances(place[None], self._scaled_known), self._length)[0]
+            value, weights = covariances @ known_weights, known_weights
+            if deviations:
+                explaining = cho_solve((self._factor, True), covariances)
+                unknown = math.sqrt(max(1 - covariances @ explaining, SMALLEST_UNKNOWN))
+                value += deviations * unknown
+                weights = known_weights - deviations / unknown * explaining
+            slope = (weights * covariances) @ (self._scaled_known - place) / self._length**2
+            return -value, -slope
+
+        bounds = [(-1 / scale, 1 / scale) for scale in self._length_scales]
+        top = minimize(depth, action / self._length_scales, jac=True, bounds=bounds, method="L-BFGS-B").x
+        return (top * self._length_scales).clip(-1, 1)
 
     def _covariances_with(self, actions: np.ndarray) -> np.ndarray:
         """Covariances of some actions with the known ones, of shape (m, n)."""
         return _covariances(_squared_distances(actions / self._length_scales, self._scaled_known), self._length)
+
+
+def first_covariances(actions: np.ndarray) -> np.ndarray:
+    """
+    Covariances of the rewards of actions by the first length and noise, as multiples of the variance by chance.
+
+    :param actions: Scaled actions, of shape (n, dim)
+    :return: Covariances, of shape (n, n)
+    """
+    length, noise = _lengths(actions.shape[1])[0], NOISES[0]
+    return np.eye(len(actions)) + _covariances(_squared_distances(actions, actions), length) / noise
+
+
+def _lengths(dim: int) -> list[float]:
+    """Lengths to choose from in a box of some dimensions."""
+    growth = math.sqrt(max(dim, 4) / 4)
+    return [growth * length for length in LENGTHS]
 
 
 def _likeliest(distances: np.ndarray, rewards: np.ndarray, lengths: Sequence[float]) -> tuple[float, float]:

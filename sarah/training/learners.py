@@ -245,6 +245,7 @@ class _Searching:
         self._generator = np.random.default_rng(plan.seeds.episodes)
         self._running: deque[tuple[EpisodeSpec, Job]] = deque()
         self._returns: list[float] = []
+        self._actions: list[Parameters] = []
         self._disturbances: list[Sequence[float]] = []
 
     def learn(self, episodes: int) -> None:
@@ -276,7 +277,9 @@ class _Searching:
         check_as_many(spec.task, disturbances, self._disturbances)
         self._disturbances.append(disturbances)
         self._returns.append(result.episode_return)
-        return float(corrected(np.array(self._returns), np.array(self._disturbances))[-1])
+        self._actions.append(spec.task.box.scaled(spec.parameters))
+        told = (self._returns, self._actions, self._disturbances)
+        return float(corrected(*(np.array(numbers) for numbers in told))[-1])
 
 
 Learner = _Agent | _Searching

@@ -112,5 +112,5 @@ class Tried:
 
     def _expectation(self) -> GaussianProcess:
         places = np.array(self._places).reshape(len(self), len(self._box.parameters))
-        merits = corrected(np.array(self._merits), np.array(self._disturbances))
+        merits = corrected(np.array(self._merits), places, np.array(self._disturbances))
         return GaussianProcess(places, merits, length_scales=self._box.length_scales)

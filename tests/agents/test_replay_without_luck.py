@@ -15,7 +15,9 @@ from stable_baselines3.common.utils import set_random_seed
 from stable_baselines3.common.vec_env import VecNormalize
 
 from sarah.agents import LocalNAF, RankReplayBuffer, buffers
-from sarah.agents.corrections import FEWEST_EPISODES, MOST_FITTED, PENALTY, bounded, corrected
+from sarah.agents.corrections import FEWEST_EPISODES, MOST_FITTED, PENALTY
+from sarah.agents.corrections import corrected as corrected_of_actions
+from sarah.agents.gaussian_process import bounded
 
 BOX = spaces.Box(-1, 1, (2,))
 
@@ -65,7 +67,7 @@ def without_luck(buffer: RankReplayBuffer, first: int) -> np.ndarray:
     numbers = buffer.observations[: buffer.size(), 0, 0]
     order = np.argsort(numbers)
     assert numbers[order[0]] == first and buffer.disturbances is not None
-    return corrected(buffer.rewards[order, 0], buffer.disturbances[order])
+    return corrected_of_actions(buffer.rewards[order, 0], buffer.actions[order, 0], buffer.disturbances[order])
 
 
 def test_the_best_action_is_a_good_one_and_not_a_lucky_one() -> None:
@@ -150,6 +152,11 @@ def test_an_agent_learns_from_several_environments_that_tell() -> None:
     assert np.corrcoef(rewards, luck)[0, 1] > 0.95
 
 
+def corrected(returns: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
+    """Corrected returns of one action."""
+    return corrected_of_actions(returns, np.full((len(returns), 2), 0.3), disturbances)
+
+
 def drawn(seed: int, number: int = 60, width: int = 3) -> tuple[np.ndarray, np.ndarray]:
     """Returns that disturbances decide in part, and the disturbances."""
     rng = np.random.default_rng(seed)
@@ -169,6 +176,26 @@ def test_it_is_a_ridge_regression_on_squares_and_products(seed: int) -> None:
     np.testing.assert_allclose(without, returns - explanation.predict(disturbances) + returns.mean(), rtol=1e-9)
     np.testing.assert_allclose(corrected(returns, disturbances[:, ::-1] * 1e200 + 3e200), without)
     np.testing.assert_allclose(corrected(1e200 * returns, disturbances), 1e200 * without)
+
+
+def test_what_was_learned_is_not_taken_for_luck_that_changed_meanwhile() -> None:
+    """The agent comes to the best actions while a battery runs down, whose charge decides a little or nothing."""
+    rng, time = np.random.default_rng(0), np.linspace(0, 1, 200)
+    actions = np.clip(rng.normal(0.5 * time[:, None], 0.8 - 0.7 * time[:, None], (200, 2)), -1, 1)
+    worths = np.array([worth(action) for action in actions])
+    luck = rng.normal(0, 0.1, 200)
+    charge = (1 - time + rng.normal(0, 0.1, 200))[:, None]
+    for effect, largest in ((0.0, 0.3), (charge[:, 0], 0.6)):
+        returns = worths + luck + effect
+        error = np.std(corrected_of_actions(returns, actions, charge) - worths - luck)
+        assert error < largest * np.std(corrected(returns, charge) - worths - luck)
+
+
+def test_hundreds_of_disturbances_leave_what_actions_decide() -> None:
+    rng = np.random.default_rng(0)
+    disturbances, returns = rng.normal(size=(100, 300)), rng.normal(size=100)
+    without = corrected(returns + 3 * disturbances[:, 7], disturbances)
+    assert np.corrcoef(without, returns)[0, 1] > 0.6 and 0.6 < without.std() < 1.3
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -244,7 +271,7 @@ def test_the_newest_of_many_are_fitted_and_all_are_corrected() -> None:
 
 def test_a_correction_is_made_once_after_an_addition(monkeypatch: pytest.MonkeyPatch) -> None:
     calls: Any = []
-    monkeypatch.setattr(buffers, "corrected", lambda *args: calls.append(len(args[0])) or corrected(*args))
+    monkeypatch.setattr(buffers, "corrected", lambda *args: calls.append(len(args[0])) or corrected_of_actions(*args))
     buffer = played(30)
     for _ in range(3):
         buffer.sample(4)

@@ -193,6 +193,18 @@ def test_the_best_is_the_highest_in_the_box_tried_or_not(top: tuple[float, float
     assert np.abs(best).max() <= 1
 
 
+@pytest.mark.parametrize("deviations", [0.0, 1.0])
+def test_the_best_is_on_a_top_in_many_dimensions_too(deviations: float) -> None:
+    """No step along one dimension is better."""
+    rng = np.random.default_rng(0)
+    actions = rng.uniform(-1, 1, (200, 12))
+    rewards = np.exp(-((actions - 0.3) ** 2).sum(axis=1) / 4) + rng.normal(0, 0.01, 200)
+    process = GaussianProcess(actions, rewards, length_scales=[0.5] + [1.0] * 11)
+    best = process.best(deviations=deviations)
+    steps = (best + 0.02 * np.vstack([np.eye(12), -np.eye(12)])).clip(-1, 1)
+    assert process.upper_bounds(best[None], deviations)[0] > process.upper_bounds(steps, deviations).max() - 1e-6
+
+
 def test_how_deep_a_few_disasters_are_makes_no_difference() -> None:
     """Bad luck of one episode in twenty."""
     rng = np.random.default_rng(0)

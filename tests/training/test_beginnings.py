@@ -161,7 +161,8 @@ def test_each_return_is_corrected_by_what_is_known_then(tmp_path: Path, monkeypa
     returns = np.array([simulate(spec).episode_return for spec in specs])
     assert [float(row["return"]) for row in run.episodes()][: len(specs)] == returns.tolist()
     disturbances = np.array([disturbances_of(spec) for spec in specs])
-    expected = [corrected(returns[:end], disturbances[:end])[-1] for end in range(1, len(specs) + 1)]
+    actions = np.array([spec.task.box.scaled(spec.parameters) for spec in specs])
+    expected = [corrected(returns[:end], actions[:end], disturbances[:end])[-1] for end in range(1, len(specs) + 1)]
     assert Listening.told == expected and (np.array(expected[19:]) != returns[19:]).any()
 
 
