@@ -15,24 +15,27 @@ PENALTY = 30.0
 """Penalty of the ridge regression: as if so many further episodes had shown no effect."""
 CHANCE = 0.1
 """Probability with which disturbances that explain nothing are taken for some that do, and corrected for."""
-EPISODES_PER_FEATURE = 4
+EPISODES_PER_FEATURE = 2
 """Fewest episodes for each feature of the regression: more features would explain anything."""
 SMALLEST_DEVIATION = 1e-12
 """Standard deviation, as a share of the largest amount, below which a number counts as constant."""
+Linear = Callable[[np.ndarray], np.ndarray]
+"""A linear function of a column, or of several, with a row for each episode."""
 
 
 def corrected(returns: np.ndarray, actions: np.ndarray, disturbances: np.ndarray) -> np.ndarray:
     """
     Returns less what a ridge regression on the disturbances, their squares and their products explains of them.
 
-    What near actions have in common is none of it: the remainders of the regression are correlated as in a
-    :class:`~sarah.agents.gaussian_process.GaussianProcess` of the actions with the first length and noise (generalized
-    least squares, Aitken 1935). Otherwise a disturbance that changes while the agent learns would explain what was
-    learned.
+    It explains what a smooth function of the actions leaves of the returns, by what that leaves of the disturbances
+    (Speckman 1988). Otherwise a disturbance that changes while the agent learns would explain what was learned. The
+    function is the expectation of a :class:`~sarah.agents.gaussian_process.GaussianProcess` with the first length and
+    noise.
 
     Nothing is explained unless one of the disturbances explains more than chance would in the best of so many. Then
     those are left out that explain no more by themselves than chance would: many that matter little would hide the few
-    that matter. The mean stays. A return that is not finite stays as it is, and explains nothing.
+    that matter. Of the others the most telling are taken, as many as there are episodes for. The mean stays. A return
+    that is not finite stays as it is, and explains nothing.
 
     :param returns: Returns of the episodes, the newest last, of shape (n,)
     :param actions: Actions of the same episodes, scaled to [-1, 1], of shape (n, dim)
@@ -40,49 +43,44 @@ def corrected(returns: np.ndarray, actions: np.ndarray, disturbances: np.ndarray
     :return: Corrected returns, of shape (n,); the given ones if there are fewer than
         :data:`FEWEST_EPISODES`, if nothing varies, or if no disturbance tells
     """
-    known = np.flatnonzero(np.isfinite(returns))
-    if len(known) < FEWEST_EPISODES:
+    from scipy.linalg import cho_solve, solve_triangular  # Here, because plain NAF needs no scipy
+
+    known = np.flatnonzero(np.isfinite(returns) & np.isfinite(actions).all(axis=1))
+    if len(known) < FEWEST_EPISODES or not disturbances.shape[1]:
         return returns
     fitted = known[-MOST_FITTED:]
     scale = np.abs(returns[fitted]).max()
     if np.ptp(returns[fitted]) <= SMALLEST_DEVIATION * scale:
         return returns
-    independent = _independent(actions[fitted])
-    targets = independent(bounded(returns[fitted]) / scale)
-    disturbances = disturbances[:, _telling(disturbances[fitted], targets, independent)]
-    if not disturbances.shape[1]:
+    targets = bounded(returns[fitted] / scale)
+    factor = np.linalg.cholesky(first_covariances(actions[fitted]))
+    independent = _without_mean(lambda rows: solve_triangular(factor, rows, lower=True), len(fitted))
+    telling = _telling(disturbances[fitted], targets, independent)
+    if not telling.size:
         return returns
-    known_features, features = _features(disturbances[fitted], disturbances)
-    known_features = independent(known_features)
-    products = known_features.T @ known_features + PENALTY * np.eye(features.shape[1])
-    explained = features @ np.linalg.solve(products, known_features.T @ targets)
+    left = _without_mean(lambda rows: cho_solve((factor, True), rows), len(fitted))
+    known_features, features = _features(disturbances[fitted][:, telling], disturbances[:, telling])
+    known_features = left(known_features)
+    penalty = PENALTY * (known_features**2).mean()  # An episode counts for less, the more its action explains
+    products = known_features.T @ known_features + penalty * np.eye(features.shape[1])
+    explained = features @ np.linalg.solve(products, known_features.T @ left(targets))
     explained -= explained[known].mean()  # not 0 where the fit leaves some out
     return returns - scale * explained
 
 
-def _independent(actions: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
-    """
-    What makes columns of the episodes' numbers independent of the actions, and of what is the same in all episodes.
+def _without_mean(function: Linear, episodes: int) -> Linear:
+    """The function, and after it no part of what is the same in all episodes."""
+    mean = function(np.ones(episodes))
+    mean /= np.linalg.norm(mean)
 
-    :param actions: Actions of the episodes
-    :return: A function of one column, or of an array of columns, with a row for each episode
-    """
-    from scipy.linalg import solve_triangular  # Here, because plain NAF needs no scipy
+    def without_mean(columns: np.ndarray) -> np.ndarray:
+        columns = function(columns)
+        return columns - np.tensordot(mean, mean @ columns, axes=0)
 
-    factor = np.linalg.cholesky(first_covariances(actions))
-    common = solve_triangular(factor, np.ones(len(actions)), lower=True)
-    common /= np.linalg.norm(common)
-
-    def independent(columns: np.ndarray) -> np.ndarray:
-        columns = solve_triangular(factor, columns, lower=True)
-        return columns - np.tensordot(common, common @ columns, axes=0)
-
-    return independent
+    return without_mean
 
 
-def _telling(
-    disturbances: np.ndarray, targets: np.ndarray, independent: Callable[[np.ndarray], np.ndarray]
-) -> np.ndarray:
+def _telling(disturbances: np.ndarray, returns: np.ndarray, independent: Linear) -> np.ndarray:
     """
     Indices of the disturbances that explain more than chance would, by a parabola (F test with 2 degrees of freedom).
 
@@ -90,10 +88,11 @@ def _telling(
     disturbance with two values, which has no parabola, the test asks a little more than that.
 
     :param disturbances: Disturbances, one row an episode
-    :param targets: Returns, made independent
-    :param independent: What makes columns independent
+    :param returns: Returns of the same episodes
+    :param independent: What makes the episodes' rests independent of each other
     """
     kept, lines, _ = _standard(disturbances, disturbances)
+    targets = independent(returns)
     explained = np.array([_explained(independent(np.column_stack([line, line**2])), targets) for line in lines.T])
     probabilities = (1 - np.minimum(explained, 1)) ** ((len(targets) - 3) / 2)
     if not probabilities.size or probabilities.min() >= CHANCE / probabilities.size:

@@ -185,7 +185,7 @@ def test_what_was_learned_is_not_taken_for_luck_that_changed_meanwhile() -> None
     worths = np.array([worth(action) for action in actions])
     luck = rng.normal(0, 0.1, 200)
     charge = (1 - time + rng.normal(0, 0.1, 200))[:, None]
-    for effect, largest in ((0.0, 0.3), (charge[:, 0], 0.6)):
+    for effect, largest in ((0.0, 0.2), (charge[:, 0], 0.4)):
         returns = worths + luck + effect
         error = np.std(corrected_of_actions(returns, actions, charge) - worths - luck)
         assert error < largest * np.std(corrected(returns, charge) - worths - luck)
@@ -196,6 +196,12 @@ def test_hundreds_of_disturbances_leave_what_actions_decide() -> None:
     disturbances, returns = rng.normal(size=(100, 300)), rng.normal(size=100)
     without = corrected(returns + 3 * disturbances[:, 7], disturbances)
     assert np.corrcoef(without, returns)[0, 1] > 0.6 and 0.6 < without.std() < 1.3
+
+
+def test_ten_disturbances_that_matter_are_all_known() -> None:
+    rng = np.random.default_rng(0)
+    disturbances, rest = rng.normal(size=(150, 10)), 0.5 * rng.normal(size=150)
+    assert np.std(corrected(disturbances.sum(axis=1) / np.sqrt(10) + rest, disturbances) - rest) < 0.45
 
 
 @pytest.mark.parametrize("seed", range(5))
@@ -252,11 +258,13 @@ def test_a_few_episodes_stay_as_they_are() -> None:
 
 
 @pytest.mark.parametrize("value", [np.nan, -np.inf])
-def test_a_return_that_is_no_number_spoils_no_other(value: float) -> None:
+def test_a_return_or_action_that_is_no_number_spoils_no_other(value: float) -> None:
     returns, disturbances = drawn(0)
     spoilt, others = returns.copy(), np.delete(np.arange(60), [3, 50])
     spoilt[[3, 50]] = value
     without = corrected(spoilt, disturbances)
+    actions = np.where(np.isfinite(spoilt), 0.3, value)[:, None]
+    np.testing.assert_array_equal(corrected_of_actions(returns, actions, disturbances)[others], without[others])
     np.testing.assert_array_equal(without[[3, 50]], value)
     np.testing.assert_allclose(without[others], corrected(returns[others], disturbances[others]))
 
