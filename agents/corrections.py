@@ -35,7 +35,7 @@ def corrected(returns: np.ndarray, actions: np.ndarray, disturbances: np.ndarray
     Nothing is explained unless one of the disturbances explains more than chance would in the best of so many. Then
     those are left out that explain no more by themselves than chance would: many that matter little would hide the few
     that matter. Of the others the most telling are taken, as many as there are episodes for. The mean stays. A return
-    that is not finite stays as it is, and explains nothing.
+    that is not finite stays as it is. Neither such an episode explains anything, nor one whose action is not finite.
 
     :param returns: Returns of the episodes, the newest last, of shape (n,)
     :param actions: Actions of the same episodes, scaled to [-1, 1], of shape (n, dim)
