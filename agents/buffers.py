@@ -131,8 +131,13 @@ class RankReplayBuffer(ReplayBuffer):
         """
         Add one transition of each environment, whose info may hold what its disturbances were.
 
-        :raises ValueError: if disturbances are not finite, or not as many as those of the transitions before
+        :raises ValueError: if disturbances are not finite, or not as many as those of the transitions before, or if an
+            action is not finite
         """
+        if not np.isfinite(action).all():
+            raise ValueError(
+                f"an action must be finite, not {np.asarray(action).tolist()}: see the agent and its noise"
+            )
         self._forget()
         for i, info in enumerate(infos):
             row = slice(i, i + 1)

@@ -71,7 +71,7 @@ def main() -> None:
     arguments = with_out(COMMAND, sys.argv[1:], {"--export": "--out"})
     options = parse_episode_options(COMMAND, arguments, ViewOptions())
     if find_spec("viser") is None:
-        raise ConfigurationError("this needs the extra view: pip install 'sarah[view]'")
+        raise ConfigurationError("this needs the extra view: pip install '.[view]' in the clone")
     task = named_task(options.task)
     choices, chosen = episodes_of(options.subject, options.which, task)
     changed = options.applied_to(chosen.spec)

@@ -132,7 +132,7 @@ def check_path(path: Path) -> None:
         try:
             import imageio_ffmpeg  # noqa: F401
         except ImportError:
-            raise ConfigurationError("MP4 needs the extra video: pip install 'sarah[video]'") from None
+            raise ConfigurationError("MP4 needs the extra video: pip install '.[video]' in the clone") from None
 
 
 def write_video(pictures: Iterable[Image.Image], path: Path) -> None:

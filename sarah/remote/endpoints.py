@@ -138,7 +138,7 @@ class Endpoint:
         :raises ConfigurationError: naming the extra
         """
         if find_spec("zenoh") is None:
-            raise ConfigurationError("this needs the extra remote: pip install 'sarah[remote]'")
+            raise ConfigurationError("this needs the extra remote: pip install '.[remote]' in the clone")
 
     def opened(self, listens: bool) -> Session:
         """Open a session of Zenoh, which has to be closed.

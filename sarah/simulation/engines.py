@@ -10,7 +10,7 @@ from sarah.errors import ConfigurationError
 Engine = Literal["pybullet", "mujoco"]
 INSTALLATION = {
     "pybullet": "pip install pybullet (from Python 3.12 on it is compiled, which takes some minutes)",
-    "mujoco": "pip install 'sarah[mujoco]'",
+    "mujoco": "pip install '.[mujoco]' in the clone",
 }
 """Command that installs each engine."""
 

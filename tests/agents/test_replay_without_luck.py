@@ -127,6 +127,15 @@ def test_other_disturbances_than_before_are_refused(before: Any, info: dict[str,
     assert str(refused.value) == f'info["disturbances"] must be {words}' and buffer.size() == before["episodes"]
 
 
+def test_an_action_that_is_no_number_is_refused_before_it_is_stored() -> None:
+    buffer = played(3)
+    with pytest.raises(
+        ValueError, match=r"an action must be finite, not \[\[nan, 0.0\]\]: see the agent and its noise"
+    ):
+        add(buffer, 3, (np.nan, 0.0), 1.0, disturbances=[0.0, 0.0])
+    assert buffer.size() == 3
+
+
 def test_after_a_reset_there_may_be_others_or_none() -> None:
     buffer = played(30)
     infos: list[dict[str, Any]] = [{"disturbances": np.zeros(5)}, {}, {"disturbances": []}]

@@ -85,7 +85,7 @@ def test_tls_asks_both_sides_for_certificates(tmp_path: Path) -> None:
 def test_without_zenoh_one_line_names_the_extra(monkeypatch: pytest.MonkeyPatch) -> None:
     missing: Callable[[str], None] = lambda name: None  # noqa: E731
     monkeypatch.setattr("sarah.remote.endpoints.find_spec", missing)
-    with pytest.raises(ConfigurationError, match=re.escape("pip install 'sarah[remote]'")):
+    with pytest.raises(ConfigurationError, match=re.escape("pip install '.[remote]' in the clone")):
         Endpoint().opened(listens=True)
 
 

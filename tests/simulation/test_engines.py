@@ -74,7 +74,7 @@ def test_diverging_physics_ends_the_episode_and_writes_no_file(
 
 
 STEPPING = "0.4,1.3,0.1,1,1"
-MUJOCO = "engine 'mujoco' needs the package mujoco: pip install 'sarah[mujoco]'\n"
+MUJOCO = "engine 'mujoco' needs the package mujoco: pip install '.[mujoco]' in the clone\n"
 PYBULLET = "the package pybullet: pip install pybullet ("
 
 

@@ -119,4 +119,4 @@ def test_the_page_is_served_to_this_machine_only() -> None:
 def test_without_the_extra_the_command_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(view, "find_spec", lambda _: None)
     said = run("sarah-view", cwd=tmp_path).stderr
-    assert said == "sarah-view: error: this needs the extra view: pip install 'sarah[view]'\n"
+    assert said == "sarah-view: error: this needs the extra view: pip install '.[view]' in the clone\n"
