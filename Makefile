@@ -31,8 +31,12 @@ $(VENV)/installed $(VENV)/ready: setup.cfg pyproject.toml constraints.txt
 	$(BIN)/pip install --quiet --no-compile -c constraints.txt --editable '.[$(EXTRAS)]'
 	@touch $@
 
+# Refused before the first training, and not by the command that comes after it.
+whole = $(if $($(1)),$(if $(shell printf %s '$($(1))' | grep -xE '[1-9][0-9]*'),,$(error $(1) must be a whole number above 0, not '$($(1))')))
+
 train: RUN := $(RUN)
 train: $(or $(wildcard $(VENV)/installed),$(VENV)/ready)  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
+	@:$(foreach name,EPISODES BALANCE_EPISODES PUSHES,$(call whole,$(name)))
 	$(BIN)/sarah-train --task stepping $(EPISODES:%=--episodes %) --seed $(SEED) \
 		--workers $(WORKERS) --out $(RUN)/stepping
 	@echo "the second training, and beside it the report of the first"

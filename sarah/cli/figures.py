@@ -55,6 +55,7 @@ def main() -> None:
     files = sorted(draw_all_figures([RunRecord(run) for run in runs], folder))
     for file in files:
         print(file)
-    typed = [] if options.task is None else ["--task", options.task]
+    learned = runs[0].config().task
+    typed = [] if learned.file is None else ["--task", options.task or learned.reference]
     reports: list[Step] = [("have it on one page", ("sarah-report", options.runs[0], *typed))] if len(runs) == 1 else []
     say_next(to_open(next(file for file in files if file.suffix == ".png")), *reports)

@@ -98,7 +98,7 @@ def test_the_next_steps_name_it_too(folder: Path, monkeypatch: pytest.MonkeyPatc
     shown = folder / "shown.png"
     monkeypatch.setattr("sarah.reports.all_figures.draw_all_figures", lambda *_: [shown])
     monkeypatch.setattr("sarah.reports.report.write_report", lambda *_: None)
-    figures = run("sarah-figures", "run", *TASK, cwd=folder)
+    figures = run("sarah-figures", "run", cwd=folder)  # draws what was recorded, and does not run the file
     assert "sarah-report run --task my_task.py:THRIFTY\n" in figures.stderr
     report = run("sarah-report", "run", *TASK, cwd=folder)
     assert report.stdout == "run/report.html\n" and "sarah-view run --task my_task.py:THRIFTY\n" in report.stderr
