@@ -14,7 +14,7 @@ from typing import ClassVar
 import gymnasium as gym
 import numpy as np
 import torch as th
-from pandas import DataFrame
+from pandas import DataFrame, Series
 
 from experiments.experiment import Experiment, product
 from experiments.naf.learners import EVALUATION_SEED
@@ -107,25 +107,23 @@ def _of_kinds(rows: DataFrame) -> DataFrame:
 
 
 def answer(rows: DataFrame) -> str:
-    """How far W is from what mu earns, at the narrowest noise and at the widest, with both buffers."""
+    """Where W is beside what mu earns, alone and with its noise: means of seeds, whatever noise and buffer."""
     if len(rows) < len(FULL.cases()):
         return "Trainings are missing so far to tell what W depends on."
-    sentences = []
-    for task, of in groups(_of_kinds(rows), "task").items():
-        share = shown(of.effective_share.mean(), ".0%")
-        sentences.append(f"On {task} the weights of W leave {share} of a batch effective.")
-        for buffer, one in groups(of, "buffer").items():
-            ends = [
-                f"{_beside(row.w - row.of_mu)} with noise of {shown(row.exploration_std, '.1f')}"
-                for _, row in one.iloc[[0, -1]].iterrows()
-            ]
-            sentences.append(f"With a buffer of {buffer:,} W is {' and '.join(ends)}.")
-    return " ".join(sentences)
+    return " ".join(
+        f"On {task} W is {_beside(of.w - of.of_mu)} the return of mu, and {_beside(of.w - of.with_noise)} that of mu "
+        f"with its noise. Its weights leave {shown(of.effective_share.mean(), '.0%')} of a batch effective."
+        for task, of in groups(_of_kinds(rows), "task").items()
+    )
 
 
-def _beside(difference: float) -> str:
-    """How far W is above or below the discounted return of mu, in words."""
-    return f"{shown(abs(difference), '.1f')} {'above' if difference > 0 else 'below'} the return of mu"
+def _beside(differences: Series[float]) -> str:
+    """How far something is above or below another, in words."""
+    lowest, highest = differences.min(), differences.max()
+    if lowest < 0 < highest:
+        return f"from {shown(-lowest, '.0f')} below to {shown(highest, '.0f')} above"
+    near, far = sorted((abs(lowest), abs(highest)))
+    return f"{shown(near, '.0f')} to {shown(far, '.0f')} {'above' if lowest > 0 else 'below'}"
 
 
 def values(rows: DataFrame) -> str:
