@@ -131,11 +131,11 @@ def _compared(naf: DataFrame, others: DataFrame, name: str) -> str:
         (_, low, high), (_, other_low, other_high) = map(interquartile_mean, (ones[task], of_others[task]))
         verdict = "above" if low > other_high else "below" if high < other_low else "not told apart from"
         verdicts.setdefault(f"{verdict} {name}", []).append(task)
-    listed = "; ".join(f"{verdict} on {', '.join(where)}" for verdict, where in verdicts.items())
+    listed = ", and ".join(f"{verdict} on {', '.join(where)}" for verdict, where in verdicts.items())
     chance = improvement([ones[task] for task in tasks], [of_others[task] for task in tasks])
     middle, *ends_of_it = (shown(value, ".2f") for value in chance)
     return (
-        f"After {STEPS:,} steps NAF is {listed}; a seed of NAF is above one of {name} with a probability of {middle} "
+        f"After {STEPS:,} steps NAF is {listed}. A seed of NAF is above one of {name} with a probability of {middle} "
         f"({' to '.join(ends_of_it)})."
     )
 
