@@ -281,8 +281,8 @@ def test_naf_is_above_by_its_interval_missing_seeds_are_not_compared() -> None:
     rows += [row for seed in range(4) for row in course("SAC", seed, 1.0, task="Hopper-v5")]
     said = answer(DataFrame(rows))
     assert said.startswith(
-        "After 15,000 steps NAF is above TD3 on HalfCheetah-v5; below TD3 on Hopper-v5; not told apart from TD3 on "
-        "Walker2d-v5; a seed of NAF is above one of TD3 with a probability of 0."
+        "After 15,000 steps NAF is above TD3 on HalfCheetah-v5, and below TD3 on Hopper-v5, and not told apart from "
+        "TD3 on Walker2d-v5. A seed of NAF is above one of TD3 with a probability of 0."
     )
     assert "Seeds are missing so far to compare SAC, DDPG. NAF ends with a V" in said
 
