@@ -109,6 +109,8 @@ def answer(rows: DataFrame) -> str:
     nearest = naf.sort_values("v_over_bound").iloc[-1]
     compared = {other: _compared(naf, found[found.algorithm == other], other) for other in COMPARED if other != "NAF"}
     sentences = [said for said in compared.values() if said]
+    if sentences:
+        sentences[0] = f"After {STEPS:,} steps {sentences[0]}"
     if few := [other for other, said in compared.items() if not said]:
         sentences.append(f"Seeds are missing so far to compare {', '.join(few)}.")
     ratio = f"NAF ends with a V over its bound of {shown(nearest.v_over_bound, '.2f')} at most, on {nearest['task']}."
@@ -135,7 +137,7 @@ def _compared(naf: DataFrame, others: DataFrame, name: str) -> str:
     chance = improvement([ones[task] for task in tasks], [of_others[task] for task in tasks])
     middle, *ends_of_it = (shown(value, ".2f") for value in chance)
     return (
-        f"After {STEPS:,} steps NAF is {listed}. A seed of NAF is above one of {name} with a probability of {middle} "
+        f"NAF is {listed}. A seed of NAF is above one of {name} with a probability of {middle} "
         f"({' to '.join(ends_of_it)})."
     )
 
