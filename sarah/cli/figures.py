@@ -52,10 +52,11 @@ def main() -> None:
     folder = options.out or runs[0].figures_path
     from sarah.reports.all_figures import draw_all_figures
 
-    files = sorted(draw_all_figures([RunRecord(run) for run in runs], folder))
+    records = [RunRecord(run) for run in runs]
+    files = sorted(draw_all_figures(records, folder))
     for file in files:
         print(file)
-    learned = runs[0].config().task
+    learned = records[0].config.task
     typed = [] if learned.file is None else ["--task", options.task or learned.reference]
     reports: list[Step] = [("have it on one page", ("sarah-report", options.runs[0], *typed))] if len(runs) == 1 else []
     say_next(to_open(next(file for file in files if file.suffix == ".png")), *reports)
