@@ -50,7 +50,7 @@ second-training:
 		--workers $(WORKERS) --out $(RUN)/balance
 
 robustness:
-	$(BIN)/sarah-eval $(RUN)/balance --robustness --out $(RUN)/figures --episodes $(PUSHES) --workers $(WORKERS)
+	$(BIN)/sarah-eval $(RUN)/balance --robustness --out $(RUN)/figures --episodes $(or $(PUSHES),8) --workers $(WORKERS)
 
 # What runs beside something else says only what goes wrong, so that its words do not stand between the other's.
 quietly = @said=$$(TQDM_DISABLE=1 $(1) 2>&1) || { printf '%s\n' "$$said" >&2; exit 1; }

@@ -41,6 +41,7 @@ STEPS = 15_000
 SEEDS = range(5)
 LONG_STEPS = 300_000
 LONG_SEED = 5
+TO_BE_MADE = "*Still to be made.*"
 
 
 class Trainings(NamedTuple):
@@ -113,7 +114,7 @@ def answer(rows: DataFrame) -> str:
         sentences[0] = f"After {STEPS:,} steps {sentences[0]}"
     if few := [other for other, said in compared.items() if not said]:
         sentences.append(f"Seeds are missing so far to compare {', '.join(few)}.")
-    ratio = f"NAF ends with a V over its bound of {shown(nearest.v_over_bound, '.2f')} at most, on {nearest['task']}."
+    ratio = f"V comes to {shown(nearest.v_over_bound, '.2f')} of its bound at most, on {nearest['task']}."
     return " ".join([*sentences, ratio])
 
 
@@ -183,6 +184,8 @@ def parts(rows: DataFrame) -> str:
 
 def same_settings(rows: DataFrame) -> str:
     """The other algorithms with settings of NAF."""
+    if not rows.algorithm.isin(WITH_NAFS_SETTINGS).any():
+        return TO_BE_MADE
     return _table(rows, (*COMPARED, *WITH_NAFS_SETTINGS), SETTINGS_TASKS)
 
 
@@ -190,7 +193,7 @@ def _table(rows: DataFrame, algorithms: Collection[str], tasks: Collection[str])
     """Ends of trainings: interquartile means over seeds."""
     found = ends(rows[rows.algorithm.isin(algorithms) & rows["task"].isin(tasks) & rows.seed.isin(SEEDS)])
     if set(found.algorithm) <= {"NAF"}:
-        return "*Still to be made.*"
+        return TO_BE_MADE
     columns = ["task", "algorithm", "seeds", "return", "return_low", "return_high", "v_over_bound"]
     caption = (
         f"Mean return of the last {RECENT} evaluations in {STEPS:,} steps: interquartile mean and its 95 % interval."

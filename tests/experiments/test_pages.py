@@ -284,7 +284,7 @@ def test_naf_is_above_by_its_interval_missing_seeds_are_not_compared() -> None:
         "After 15,000 steps NAF is above TD3 on HalfCheetah-v5, and below TD3 on Hopper-v5, and not told apart from "
         "TD3 on Walker2d-v5. A seed of NAF is above one of TD3 with a probability of 0."
     )
-    assert "Seeds are missing so far to compare SAC, DDPG. NAF ends with a V" in said
+    assert "Seeds are missing so far to compare SAC, DDPG. V comes to" in said
 
 
 def test_a_table_says_how_many_seeds_there_are_so_far() -> None:
