@@ -5,14 +5,21 @@ BIN := $(VENV)/bin
 # Numbers of episodes of the First and the Second Training; by default those of sarah-train.
 EPISODES ?=
 BALANCE_EPISODES ?=
-PUSHES ?= 8
+# Pushes in each direction of the robustness table; by default 8.
+PUSHES ?=
 WORKERS ?= $(shell env -u OMP_NUM_THREADS nproc)
 SEED ?= 1
 RUN ?= runs/$(shell date +%Y%m%d-%H%M%S)
+RUN := $(RUN)
 NAME ?=
 TIMINGS := throughput episodes updates decisions viewer
 PAGE := tests/viewer/test_page.py
 ENDURANCE := kills killed_workers killed_logs resume long_run protections pushes
+
+# Refused before anything is installed or trained.
+whole = $(if $($(1)),$(if $(shell printf %s '$($(1))' | grep -xE '[1-9][0-9]*'),,$(error $(1) must be a whole number above 0, not '$($(1))')))
+$(foreach name,EPISODES BALANCE_EPISODES PUSHES,$(call whole,$(name)))
+$(if $(filter 1,$(words $(RUN))),,$(error RUN must be a path without spaces, not '$(RUN)'))
 
 .PHONY: help install train second-training robustness figures stepping-report balance-report test test-page test-slow lint format docs results bench endurance mutants clean
 
@@ -31,12 +38,7 @@ $(VENV)/installed $(VENV)/ready: setup.cfg pyproject.toml constraints.txt
 	$(BIN)/pip install --quiet --no-compile -c constraints.txt --editable '.[$(EXTRAS)]'
 	@touch $@
 
-# Refused before the first training, and not by the command that comes after it.
-whole = $(if $($(1)),$(if $(shell printf %s '$($(1))' | grep -xE '[1-9][0-9]*'),,$(error $(1) must be a whole number above 0, not '$($(1))')))
-
-train: RUN := $(RUN)
 train: $(or $(wildcard $(VENV)/installed),$(VENV)/ready)  ## both trainings with NAF, figures, reports and robustness table: a robot that steps in place and comes back from pushes
-	@:$(foreach name,EPISODES BALANCE_EPISODES PUSHES,$(call whole,$(name)))
 	$(BIN)/sarah-train --task stepping $(EPISODES:%=--episodes %) --seed $(SEED) \
 		--workers $(WORKERS) --out $(RUN)/stepping
 	@echo "the second training, and beside it the report of the first"

@@ -41,7 +41,6 @@ STEPS = 15_000
 SEEDS = range(5)
 LONG_STEPS = 300_000
 LONG_SEED = 5
-TO_BE_MADE = "*Still to be made.*"
 
 
 class Trainings(NamedTuple):
@@ -179,21 +178,22 @@ def four_algorithms(rows: DataFrame) -> str:
 
 def parts(rows: DataFrame) -> str:
     """NAF without its own parts."""
-    return _table(rows, ("NAF", *WITHOUT), PART_TASKS)
+    return _table(rows, WITHOUT, PART_TASKS, beside=("NAF",))
 
 
 def same_settings(rows: DataFrame) -> str:
     """The other algorithms with settings of NAF."""
-    if not rows.algorithm.isin(WITH_NAFS_SETTINGS).any():
-        return TO_BE_MADE
-    return _table(rows, (*COMPARED, *WITH_NAFS_SETTINGS), SETTINGS_TASKS)
+    return _table(rows, WITH_NAFS_SETTINGS, SETTINGS_TASKS, beside=COMPARED)
 
 
-def _table(rows: DataFrame, algorithms: Collection[str], tasks: Collection[str]) -> str:
-    """Ends of trainings: interquartile means over seeds."""
-    found = ends(rows[rows.algorithm.isin(algorithms) & rows["task"].isin(tasks) & rows.seed.isin(SEEDS)])
-    if set(found.algorithm) <= {"NAF"}:
-        return TO_BE_MADE
+def _table(rows: DataFrame, algorithms: Collection[str], tasks: Collection[str], beside: Collection[str] = ()) -> str:
+    """Ends of trainings: interquartile means over seeds.
+
+    :param beside: further algorithms, which alone make no table
+    """
+    found = ends(rows[rows.algorithm.isin([*algorithms, *beside]) & rows["task"].isin(tasks) & rows.seed.isin(SEEDS)])
+    if not found.algorithm.isin(algorithms).any():
+        return "*Still to be made.*"
     columns = ["task", "algorithm", "seeds", "return", "return_low", "return_high", "v_over_bound"]
     caption = (
         f"Mean return of the last {RECENT} evaluations in {STEPS:,} steps: interquartile mean and its 95 % interval."
