@@ -67,7 +67,7 @@ def _source(full: Experiment, result: Result) -> str:
     only = shlex.join(word for key in varying for word in ("--only", f"{key}={cell(cases[-1][key])}"))
     sentences = [
         result.remark,
-        "Some cases are still to be made." if result.missing else "",
+        f"Of {len(cases)} cases {result.missing} are still to be made." if result.missing else "",
         "" if result.options in ("", full.options) else f"Its options were not those of today: {result.options}.",
         f"{result.made_at} by `{command}`{_duration(result)}.",
         f"One of its cases alone: `{command} {only}`." if only else "",
