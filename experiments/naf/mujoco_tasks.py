@@ -17,7 +17,7 @@ from typing import ClassVar, NamedTuple
 
 from matplotlib.figure import Figure
 from matplotlib.ticker import EngFormatter
-from pandas import DataFrame
+from pandas import DataFrame, Series
 
 from experiments.experiment import Experiment
 from experiments.interquartile import improvement, interquartile_mean
@@ -41,6 +41,7 @@ STEPS = 15_000
 SEEDS = range(5)
 LONG_STEPS = 300_000
 LONG_SEED = 5
+ABOVE, BELOW = "above", "below"
 
 
 class Trainings(NamedTuple):
@@ -118,28 +119,64 @@ def answer(rows: DataFrame) -> str:
 
 
 def _compared(naf: DataFrame, others: DataFrame, name: str) -> str:
-    """Where the interval of NAF is above that of another algorithm and where below, and how likely a seed is above.
-
-    Nothing is said of tasks where seeds are missing.
-    """
-    ones, of_others = (
-        {task: of["return"] for task, of in groups(all_seeds, "task").items()} for all_seeds in (naf, others)
-    )
-    tasks = [task for task in TASKS if min(len(found.get(task, ())) for found in (ones, of_others)) >= len(SEEDS)]
-    if not tasks:
+    """Where NAF is above another algorithm and where below, and how likely a seed is above."""
+    pairs = _pairs(naf, others)
+    if not pairs:
         return ""
-    verdicts: dict[str, list[str]] = {}
-    for task in tasks:
-        (_, low, high), (_, other_low, other_high) = map(interquartile_mean, (ones[task], of_others[task]))
-        verdict = "above" if low > other_high else "below" if high < other_low else "not told apart from"
-        verdicts.setdefault(f"{verdict} {name}", []).append(task)
-    listed = ", and ".join(f"{verdict} on {', '.join(where)}" for verdict, where in verdicts.items())
-    chance = improvement([ones[task] for task in tasks], [of_others[task] for task in tasks])
+    listed = ", and ".join(f"{verdict} {name} on {', '.join(where)}" for verdict, where in _verdicts(pairs).items())
+    chance = improvement(*zip(*pairs.values(), strict=True))
     middle, *ends_of_it = (shown(value, ".2f") for value in chance)
     return (
         f"NAF is {listed}. A seed of NAF is above one of {name} with a probability of {middle} "
         f"({' to '.join(ends_of_it)})."
     )
+
+
+def _pairs(naf: DataFrame, others: DataFrame) -> dict[str, tuple[Series, Series]]:
+    """Returns of the seeds of NAF and of another algorithm by task, of those tasks where no seed is missing."""
+    ones, of_others = (
+        {task: of["return"] for task, of in groups(all_seeds, "task").items() if len(of) >= len(SEEDS)}
+        for all_seeds in (naf, others)
+    )
+    return {task: (ones[task], of_others[task]) for task in TASKS if task in ones and task in of_others}
+
+
+def _verdicts(pairs: dict[str, tuple[Series, Series]]) -> dict[str, list[str]]:
+    """Tasks by whether the interval of NAF is above that of the other algorithm or below."""
+    verdicts: dict[str, list[str]] = {}
+    for task, pair in pairs.items():
+        (_, low, high), (_, other_low, other_high) = map(interquartile_mean, pair)
+        verdict = ABOVE if low > other_high else BELOW if high < other_low else "not told apart from"
+        verdicts.setdefault(verdict, []).append(task)
+    return verdicts
+
+
+def parts_answer(rows: DataFrame) -> str:
+    """From which of its variants NAF is told apart."""
+    return _told_apart(rows, WITHOUT)
+
+
+def settings_answer(rows: DataFrame) -> str:
+    """From which of the algorithms with its settings NAF is told apart."""
+    return _told_apart(rows, WITH_NAFS_SETTINGS)
+
+
+def _told_apart(rows: DataFrame, names: Iterable[str]) -> str:
+    """What NAF is above and what below, of those of which no seed is missing on some task."""
+    found = ends(rows[rows.seed.isin(SEEDS)])
+    by_name = {name: _pairs(found[found.algorithm == "NAF"], found[found.algorithm == name]) for name in names}
+    verdicts = {name: _verdicts(pairs) for name, pairs in by_name.items() if pairs}
+    told = [
+        f"{verdict} '{name}' on {', '.join(of[verdict])}"
+        for verdict in (ABOVE, BELOW)
+        for name, of in verdicts.items()
+        if verdict in of
+    ]
+    if not verdicts:
+        return ""
+    if not told:
+        return "NAF is told apart from none of them."
+    return f"NAF is {', '.join(told)}. Otherwise it is not told apart from them."
 
 
 def figure(rows: DataFrame) -> Figure:

@@ -20,7 +20,7 @@ from experiments import record
 from experiments.found import paths_of
 from experiments.interquartile import improvement, interquartile_mean
 from experiments.naf.learners import AS_GU, COMPARED, NO_PARTS, V_IN_TARGETS, WIDER, WITH_NAFS_SETTINGS, WITHOUT, agent
-from experiments.naf.mujoco_tasks import FIVE, FULL, answer, figure, four_algorithms
+from experiments.naf.mujoco_tasks import FIVE, FULL, answer, figure, four_algorithms, parts_answer
 from experiments.naf.standard_tasks import answer as answer_of_ranges
 from experiments.naf.standard_tasks import ends, over_seeds
 from experiments.pages import show, write
@@ -294,6 +294,14 @@ def test_a_table_says_how_many_seeds_there_are_so_far() -> None:
     cells = [line.split(" | ")[1:4] for line in four_algorithms(DataFrame(rows)).splitlines()[4:]]
     assert cells == [["NAF", "3 of 5 so far", "1.0"], ["TD3", "1 of 5 so far", "1.0"], ["DDPG", "5", "1.0"]]
     assert figure(DataFrame(course("NAF", 0, 1.0))).axes  # of a single training
+
+
+def test_naf_is_told_apart_from_variants_of_which_no_seed_is_missing() -> None:
+    returns = {"NAF": 2.0, "NAF, no dropout": 1.0, "NAF, no pull": 2.0, "NAF, V in the targets": 3.0}
+    rows = [row for name, value in returns.items() for seed in range(5) for row in course(name, seed, value)]
+    told = "NAF is above 'NAF, no dropout' on Hopper-v5, below 'NAF, V in the targets' on Hopper-v5."
+    assert parts_answer(DataFrame(rows)).startswith(told)
+    assert parts_answer(DataFrame([*course("NAF", 0, 2.0), *course("NAF, no pull", 0, 1.0)])) == ""
 
 
 def test_each_case_is_a_training_those_that_tell_most_first() -> None:
