@@ -157,6 +157,23 @@ def test_rewards_far_from_zero_get_a_warning_once(arguments, constant, said):
     assert len(seen) == 1
 
 
+@pytest.mark.filterwarnings("ignore:rewards of")
+@pytest.mark.parametrize(
+    ("level", "mu", "curvature"),
+    [(-10.0, (0.3, 0.15), (2.0, 0.5)), (0.0, (0.3, 0.06), (2.0, 0.5)), (30.0, (0.0, 0.08), (0.0, 0.2))],
+)
+def test_rewards_far_above_zero_make_the_parabola_flat_before_v_comes_to_them(level, mu, curvature):
+    """Rewards far below 0 do less harm. The best action is 0.3, and the true curvature 2."""
+    moved = gym.wrappers.TransformAction(
+        Steady(spaces.Box(-2, 2, (1,))), lambda action: action - 0.3, spaces.Box(-1, 1, (1,))
+    )
+    env = gym.wrappers.TransformReward(moved, lambda reward: float(reward) + level)
+    model = NAF("MlpPolicy", env, seed=0, policy_kwargs=dict(net_arch=[64, 64])).learn(400)
+    assert model.predict(np.zeros(3, np.float32))[0].item() == pytest.approx(mu[0], abs=mu[1])
+    found = model.q_net.lower(th.zeros(1, 3)).square().sum().item()
+    assert found == pytest.approx(curvature[0], abs=curvature[1])
+
+
 @pytest.mark.parametrize(("device", "algorithm"), [("meta", NAF), ("meta", LocalNAF), ("cuda", NAF)])
 def test_updates_on_another_device(device, algorithm, monkeypatch):
     """All that an update computes is there: "meta" has the shapes of tensors, and refuses those of another device."""
