@@ -17,7 +17,7 @@ PAGE := tests/viewer/test_page.py
 ENDURANCE := kills killed_workers killed_logs resume long_run protections pushes
 
 # Refused before anything is installed or trained.
-whole = $(if $($(1)),$(if $(shell printf %s '$($(1))' | grep -xE '[1-9][0-9]*'),,$(error $(1) must be a whole number above 0, not '$($(1))')))
+whole = $(if $($(1)),$(if $(shell printf %s '$(subst ','\'',$($(1)))' | grep -xE '[1-9][0-9]*'),,$(error $(1) must be a whole number above 0, not '$($(1))')))
 $(foreach name,EPISODES BALANCE_EPISODES PUSHES,$(call whole,$(name)))
 $(if $(filter 1,$(words $(RUN))),,$(error RUN must be a path without spaces, not '$(RUN)'))
 

@@ -56,6 +56,7 @@ def checked_disturbances(values: Any, number: int | None) -> np.ndarray:
     """
     try:
         numbers = np.array(values, dtype=float)
+        values = numbers.tolist()
     except (ValueError, TypeError, OverflowError):
         numbers = np.array(np.nan)
     is_list = numbers.ndim == 1 and number in (None, len(numbers))

@@ -24,7 +24,7 @@ def say_learned(config: TrainingConfig, learned: Learned, path: Path) -> None:
 
     task, evaluation, baseline = config.task, learned.evaluation, learned.baseline
     named = zip(task.parameter_names, learned.parameters, strict=True)
-    print("\nlearned     " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
+    print("\nrecommended " + ", ".join(f"{name} = {value:.2f}" for name, value in named))
     print(f"warm-up     {plan_of(config).warm_up_words()}")
     neutral = "the baseline (V = 0)" if task is BALANCE else "neutral parameters"
     compared = [("", evaluation), *([] if baseline is None else [(f" for {neutral}", baseline)])]

@@ -112,12 +112,12 @@ ALWAYS = "there in every episode or in none"
 @pytest.mark.parametrize(
     ("before", "info", "words"),
     [
-        ({"episodes": 3}, {"disturbances": (1.0,)}, f"{AS_BEFORE} (1.0,)"),
+        ({"episodes": 3}, {"disturbances": (1.0,)}, f"{AS_BEFORE} [1.0]"),
         ({"episodes": 3}, {"disturbances": (1.0, "a")}, f"{AS_BEFORE} (1.0, 'a')"),
         ({"episodes": 3}, {"disturbances": 3.0}, f"{AS_BEFORE} 3.0"),
         ({"episodes": 3}, {}, ALWAYS),
         ({"episodes": 3, "tells": False}, {"disturbances": [1.0]}, ALWAYS),
-        ({"episodes": 0}, {"disturbances": [np.inf]}, "a list of finite numbers, not [inf]"),
+        ({"episodes": 0}, {"disturbances": [np.float64(np.inf)]}, "a list of finite numbers, not [inf]"),
     ],
 )
 def test_other_disturbances_than_before_are_refused(before: Any, info: dict[str, Any], words: str) -> None:

@@ -28,7 +28,7 @@ from sarah.training.train import Learned
 def test_train_shows_its_progress_and_ends_with_a_summary(trained: Trained) -> None:
     folder, process = trained
     assert process.returncode == 0, process.stderr
-    assert process.stdout.startswith("training naf on stepping: 4 episodes into mine\n\nlearned     P1 = ")
+    assert process.stdout.startswith("training naf on stepping: 4 episodes into mine\n\nrecommended P1 = ")
     for text in ("P5 = ", "warm-up     all 4 episodes", "score", "run folder  mine"):
         assert text in process.stdout
     assert "4/4" in process.stderr and "evaluating on 10 unseen seeds" in process.stderr
