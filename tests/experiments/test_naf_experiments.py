@@ -11,9 +11,10 @@ from torch import nn
 
 from experiments.interquartile import improvement, interquartile_mean
 from experiments.naf.learners import AS_GU, COMPARED, NO_PARTS, V_IN_TARGETS, WIDER, WITH_NAFS_SETTINGS, WITHOUT, agent
-from experiments.naf.mujoco_tasks import FIVE, FULL, answer, figure, four_algorithms, parts_answer
+from experiments.naf.mujoco_tasks import FIVE, FULL, answer, figure, four_algorithms, long_runs, parts_answer
 from experiments.naf.standard_tasks import answer as answer_of_ranges
 from experiments.naf.standard_tasks import ends, over_seeds
+from experiments.tables import NOTHING
 from sarah.agents import NAF
 
 
@@ -88,6 +89,18 @@ def test_a_table_says_how_many_seeds_there_are_so_far() -> None:
     cells = [line.split(" | ")[1:4] for line in four_algorithms(DataFrame(rows)).splitlines()[4:]]
     assert cells == [["NAF", "3 of 5 so far", "1.0"], ["TD3", "1 of 5 so far", "1.0"], ["DDPG", "5", "1.0"]]
     assert figure(DataFrame(course("NAF", 0, 1.0))).axes  # of a single training
+
+
+def test_long_runs_stand_side_by_side() -> None:
+    rows = DataFrame([*course("NAF", 5, 1.0, 3.0, task="Ant-v5"), *course("TD3", 5, 2.0, task="Ant-v5")])
+    assert long_runs(rows).splitlines() == [
+        "**Return along one long run of each algorithm on Ant-v5. V comes to 0.50 of its bound at most.**",
+        "",
+        "| steps | NAF | TD3 |",
+        "| --- | --- | --- |",
+        "| 0 | 1 | 2 |",
+        f"| 1 | 3 | {NOTHING} |",
+    ]
 
 
 def test_naf_is_told_apart_from_variants_of_which_no_seed_is_missing() -> None:
