@@ -122,7 +122,8 @@ class RunFolder(Folder):
         if self._task is None:
             return config
         if self._task.identity != config.task.identity:
-            kept = "" if config.task.file is None else f": the file as it was is {self.path / SOURCE}"
+            file = config.task.file
+            kept = "" if file is None else f": as it was, it is --task {self.path / SOURCE}:{file.attribute}"
             raise RunFolderError(f"{self.path} is of task {config.task.identity}, not {self._task.identity}{kept}")
         return replace(config, task=self._task)
 

@@ -111,7 +111,7 @@ def test_another_file_is_refused(folder: Path, tmp_path: Path) -> None:
         name, *arguments = command.split()
         process = run(name, *arguments, str(folder / "run"), "--task", task, cwd=tmp_path)
         assert_one_line(process, "is of task THRIFTY (")
-        assert "the file as it was is" in process.stderr
+        assert "as it was, it is --task " in process.stderr and "task.py:" in process.stderr
     assert tree(folder) == before
 
 
